@@ -2,14 +2,15 @@
 
 use crate::arguments::CheckArguments;
 use crate::devices::{fact_lines, media_line};
-use crate::report::{self, Result};
+use crate::report::{self, Result, decimals};
 use crate::scene;
 use cloakroom::assembly::Placed;
 use cloakroom::render::{
     Estimate, Images, Origins, PreparedScene, behind_photograph, estimate, origins, pixels_across,
 };
-use cloakroom::scene::{Border, Scene, Show};
+use cloakroom::scene::{Border, DeviceSettings, Projection, Scene, Show};
 use cloakroom::threads;
+use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// Bodies of fewer wavelengths than this are films.
@@ -127,6 +128,15 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
             Some(_) => {}
         }
     }
+    for (key, degrees) in angles(scene) {
+        if is_radians(degrees) {
+            writeln!(
+                text,
+                "hint         {key} is {degrees}, which looks like radians; angles are in degrees: {}",
+                decimals(degrees.to_degrees(), 0)
+            )?;
+        }
+    }
     let Origins { photograph, past_edge: past } = origins(prepared);
     if photograph == 0.0 {
         writeln!(
@@ -145,21 +155,58 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
         )?;
     }
     let Estimate { seconds, walks, samples, .. } = estimate(prepared);
-    writeln!(
-        text,
-        "estimate     {} to render on {} threads; {:.2} million of {:.2} million rays traced, \
-         the others seen past every device or interpolated",
-        duration(seconds),
-        threads::count(),
+    let (walks, samples, rest) = (
         1e-6 * walks,
         1e-6 * samples as f64,
+        match walks > samples as f64 {
+            true => "those between which others are interpolated among them",
+            false => "the others seen past every device or interpolated",
+        },
+    );
+    let of = if walks > samples { "for" } else { "of" };
+    writeln!(
+        text,
+        "estimate     {} to render on {} threads; {walks:.2} million {of} {samples:.2} million rays traced, {rest}",
+        duration(seconds),
+        threads::count(),
     )?;
     Ok(text)
 }
 
+/// The angles of a scene that people write, degrees, with their keys.
+fn angles(scene: &Scene) -> Vec<(String, f64)> {
+    let turned = |(number, device): (usize, &DeviceSettings)| {
+        (format!("device.{number}.rotation"), device.placement.rotation)
+    };
+    let mut angles: Vec<_> = scene.devices.iter().enumerate().map(turned).collect();
+    if scene.camera.projection == Projection::Perspective {
+        angles.push(("camera.field_of_view".to_owned(), scene.camera.field_of_view.value));
+    }
+    angles
+}
+
+/// Whether a number of degrees looks like a multiple of 5 degrees in radians, to the digits that people type.
+fn is_radians(degrees: f64) -> bool {
+    let steps = degrees.to_degrees() / 5.0;
+    let is_step = (steps - steps.round()).abs() * 5f64.to_radians() < 5e-4;
+    let is_round = (degrees * 20.0).fract() == 0.0;
+    is_step && !is_round && degrees.abs() < TAU
+}
+
 #[cfg(test)]
 mod tests {
-    use super::duration;
+    use super::{duration, is_radians};
+
+    #[test]
+    fn radians_are_told_from_degrees() {
+        for degrees in [5.0, 10.0, 20.0, -30.0, 45.0, 90.0, 355.0f64] {
+            let radians = degrees.to_radians();
+            assert!(is_radians(radians) && is_radians((radians * 1e4).round() / 1e4), "{radians}");
+        }
+        for degrees in [0.0, 0.1, 0.35, 1.0, -1.05, 5.0, 0.03, 22.51, 30.5432] {
+            assert!(!is_radians(degrees), "{degrees}");
+        }
+    }
 
     #[test]
     fn times_are_in_the_largest_unit_of_which_there_are_two() {

@@ -55,11 +55,8 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let inputs = inputs.chain(arguments.reference.clone());
     check_outputs(&arguments.outputs, &inputs.collect::<Vec<_>>())?;
     let _busy = interruption::busy();
-    let mut table =
+    let table =
         supervised(plan.steps(), "measuring", |_, supervision| quality(&plan, supervision))?;
-    // Files tell what they were held against.
-    let reference = reference.map(|reference| ("reference".to_owned(), reference.scene.source));
-    table.metadata.extend(reference);
     warn_of_cut_branches(&table.stats);
     let delivered = table.column("delivered").map(|column| {
         table.rows.iter().map(move |row| row.numbers[column]).filter(|share| !share.is_nan())

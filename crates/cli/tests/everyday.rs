@@ -246,6 +246,46 @@ fn check_tells_of_the_photograph() {
     assert!(before.contains("between the camera and device 0"), "{before}");
     let views = ["camera.projection=orthographic", "camera.width=40", "photograph.x=-50"];
     assert!(check(&views).contains("between the camera and device 0"));
+    for (set, told) in [
+        ("device.0.position=[0,400,0]", "device 0 is out of the camera's view"),
+        ("device.0.side=0.02", "device 0 is less than 4 pixels large in the picture"),
+        ("photograph.x=-300", "no light comes from the photograph, which is at"),
+        ("device.0.rotation=0.1745", "device.0.rotation is 0.1745, which looks like radians"),
+        ("camera.field_of_view=0.6981", "angles are in degrees: 40"),
+    ] {
+        let checked = check(&[set]);
+        assert!(checked.contains(told), "{set}: {checked}");
+    }
+}
+
+#[test]
+fn the_dark_and_the_empty_are_told_where_they_are_measured() {
+    let folder = folder();
+    let quality = |set: &str| {
+        let sweep = ["--sweep", "camera.samples=1", "--size", "16x12", "--set", set];
+        let output = run(folder.path(), &[&["quality", "scene.toml"], &sweep[..]].concat());
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(quality("photograph.x=-300").contains("no light of the photograph arrives"));
+    assert!(quality("device.0.position=[0,400,0]").contains("no device is in view"));
+    assert_eq!(quality("camera.seed=1"), "");
+}
+
+#[test]
+fn diagrams_tell_which_devices_stand_beside_their_rays() {
+    let folder = folder();
+    let at = folder.path();
+    let diagram = |scene: &str| {
+        let output = run(at, &["diagram", scene, "-o", "rays.svg", "--rays", "3"]);
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert_eq!(diagram("scene.toml"), "");
+    let beside = "[[device]]\nkind = \"sphere-cloak\"\nname = \"ball\"\nposition = [0, 30, 50]\n";
+    fs::write(at.join("beside.toml"), format!("{SCENE}length = 20\n{beside}")).unwrap();
+    let told = diagram("beside.toml");
+    assert!(told.contains("ball") && !told.contains("device 0"), "{told}");
 }
 
 #[test]
@@ -253,6 +293,8 @@ fn faults_are_told_in_the_words_that_were_typed() {
     let folder = folder();
     let at = folder.path();
     fs::write(at.join("keys.toml"), "[[keyframe]]\nframe = 0\ndevice.0.bad = 1\n").unwrap();
+    let late = "[[keyframe]]\nframe = 0\ncamera.samples = 1\n[[keyframe]]\nframe = 9\ndevice.0.side = -1\n";
+    fs::write(at.join("late.toml"), late).unwrap();
     fs::write(at.join("far.toml"), "[[keyframe]]\nframe = 3e9\ndevice.0.side = 1\n").unwrap();
     let two =
         format!("{SCENE}name = \"left\"\n[[device]]\nkind = \"mirror\"\nposition = [0, 40, 0]\n");
@@ -265,6 +307,11 @@ fn faults_are_told_in_the_words_that_were_typed() {
         (
             animate(&["--keyframes", "keys.toml"]),
             "error: --keyframes keys.toml, frame 0, device.0.bad=1.0: ",
+        ),
+        // The keyframe in which it is written, not the first frame that has it.
+        (
+            animate(&["--keyframes", "late.toml"]),
+            "error: --keyframes late.toml, frame 9, device.0.side=-1.0: ",
         ),
         (animate(&["--keyframes", "far.toml"]), "a film has at most 100000 frames"),
         (animate(&["--orbit", "0..20:5"]), "--orbit 0..20:5: it takes no step"),
@@ -309,6 +356,8 @@ fn meshes_and_materials_are_of_devices_by_number_or_name() {
     );
     let beyond = no(&["--device", "2", "-o", "a.stl"]);
     assert!(beyond.contains("there is no device 2: the scene has 2 devices, 0 to 1"), "{beyond}");
+    let which = no(&["-o", "a.npz"]);
+    assert!(which.contains("by its number or name: device 0 (\"ball\"), device 1"), "{which}");
     assert!(no(&["--grid", "3x3x3", "-o", "a.stl"]).contains("--grid: a mesh has no cells"));
     let empty = fails(at, &["export", "scene.toml", "--set", "device=[]", "-o", "a.vti"], 1);
     assert!(empty.contains("the scene has no devices"), "{empty}");
@@ -332,6 +381,10 @@ fn a_floor_may_stand_alone_and_be_what_a_carpet_should_look_like() {
     };
     assert_eq!(measured("floor.toml"), 1.0);
     assert!(measured("bump.toml") < 0.99);
+    // Files tell what they are held against.
+    succeeds(at, &[&["quality", "bump.toml", "-o", "plot.svg"], &sweep[..]].concat());
+    let plot = fs::read_to_string(at.join("plot.svg")).unwrap();
+    assert_eq!(plot.matches("floor = 20").count(), 2, "{plot}");
     // What is wrong with the reference is told of its file.
     let long =
         "kind = \"mirror\"\nrotation = 90\nposition = [0, -40, 0]\nwidth = 400\nheight = 400\n";

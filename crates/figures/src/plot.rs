@@ -225,6 +225,9 @@ fn mark(drawing: &mut Drawing, curve: usize, at: DVec2) {
     drawing.add("mark", shape).filled(color(curve));
 }
 
+/// Numbers are drawn apart that differ by more than this share of them.
+const LEVEL: f64 = 1e-3;
+
 /// The range of numbers, a little wider than they are; from 0 to 1 where all of them are `rounding`.
 fn padded(numbers: impl Iterator<Item = f64>, share: f64, rounding: f64) -> Range<f64> {
     let (low, high) = numbers
@@ -237,10 +240,15 @@ fn padded(numbers: impl Iterator<Item = f64>, share: f64, rounding: f64) -> Rang
     if size <= rounding {
         return -share..1.0;
     }
-    // Numbers that differ by rounding alone are one number.
+    // Numbers that differ by rounding alone are one number, and what differs by less than can be seen on paper is
+    // all but level.
     let width = high - low;
     if width <= rounding.max(1e-9 * size) {
         return low - 0.1 * size..high + 0.1 * size;
+    }
+    if width < LEVEL * size {
+        let half = 5.0 * LEVEL * size;
+        return low - half..high + half;
     }
     low - share * width..high + share * width
 }
@@ -319,6 +327,13 @@ mod tests {
         assert_eq!(padded([3.0, f64::NAN].into_iter(), 0.1, 0.0), 2.7..3.3);
         assert_eq!(padded([0.0, 1e-15].into_iter(), 0.1, 1e-9), -0.1..1.0);
         assert_eq!(padded(std::iter::empty(), 0.1, 0.0), 0.0..1.0);
+        // Labels are plain numbers, whatever little they differ by.
+        for differs in [0.0, 1e-12, 1e-7, 1e-5, 1e-3, 1e-2] {
+            let range = padded([0.675, 0.675 + differs].into_iter(), 0.08, 1e-9);
+            let axis = axis(&Quantity::named("Correlation"), Some((range.start, range.end)), 6);
+            assert_eq!(axis.title, "Correlation", "{differs}");
+            assert!(axis.ticks.len() > 2 && axis.ticks.iter().all(|tick| tick.label.len() < 7));
+        }
         let categories = vec!["horizontal".to_owned(), "vertical".to_owned()];
         let mut plot = plot();
         for panel in &mut plot.panels {

@@ -22,9 +22,12 @@ pub enum MaterialError {
     /// There is no device of that number.
     #[error(transparent)]
     NoDevice(#[from] NoDevice),
-    /// It is not said which of so many devices.
-    #[error("the scene has {0} devices; say which one is meant, from 0 to {last}", last = .0 - 1)]
-    WhichDevice(usize),
+    /// It is not said which of these devices.
+    #[error(
+        "the scene has {} devices; say which `device` is meant, by its number or name: {}", .0.len(),
+        .0.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    )]
+    WhichDevice(Vec<DeviceName>),
     /// The device has no medium in it, or no homogeneous segments.
     #[error("{device}, {kind}, {problem}")]
     Unsuitable {
@@ -69,7 +72,10 @@ fn chosen<'a>(
     let count = assembly.devices().len();
     let device = match device {
         Some(device) => device,
-        None if count > 1 => return Err(MaterialError::WhichDevice(count)),
+        None if count > 1 => {
+            let names = (0..count).map(|number| scene.device_name(number));
+            return Err(MaterialError::WhichDevice(names.collect()));
+        }
         None => 0,
     };
     let none = NoDevice { device, count };

@@ -8,7 +8,7 @@ use super::quality_error::{QualityError, located};
 use super::sweep::{Sweep, SweepError, combinations};
 use crate::device::Imperfection;
 use crate::render::{PreparedScene, PreparedSceneError, assembly};
-use crate::scene::{DeviceSettings, Scene};
+use crate::scene::Scene;
 use crate::scene_file::{Loaded, Override, SceneFileError};
 
 /// A sweep with all its scenes read.
@@ -19,7 +19,7 @@ pub struct SweepPlan {
     pub(super) scenes: Vec<Combination>,
     pub(super) draws: u32,
     /// What should be seen instead of the ideal, in place of the devices.
-    reference: Option<Vec<DeviceSettings>>,
+    pub(super) reference: Option<Scene>,
 }
 
 /// One combination of settings.
@@ -94,7 +94,7 @@ impl SweepPlan {
     /// changes nothing in the reference.
     #[must_use]
     pub fn with_reference(self, reference: Scene) -> Self {
-        Self { reference: Some(reference.devices), ..self }
+        Self { reference: Some(reference), ..self }
     }
 
     /// Checks that the reference can stand in the place of the first scene.
@@ -113,8 +113,8 @@ impl SweepPlan {
 
     /// What should be seen in the place of a scene.
     pub(super) fn wanted(&self, scene: &Scene) -> Scene {
-        let Some(devices) = &self.reference else { return ideal(scene) };
-        let mut wanted = Scene { devices: devices.clone(), ..scene.clone() };
+        let Some(reference) = &self.reference else { return ideal(scene) };
+        let mut wanted = Scene { devices: reference.devices.clone(), ..scene.clone() };
         for device in &mut wanted.devices {
             device.wavelength_nm = scene.light.wavelength_nm;
         }

@@ -37,7 +37,8 @@ pub struct QualityTable {
     pub draws: u32,
     /// Rare events over all rays of the pictures.
     pub stats: TraceStats,
-    /// The metadata of the first picture.
+    /// The metadata of the first picture, and as `reference` the text of the scene that all are held against,
+    /// where it is not the ideal.
     pub metadata: Vec<(String, String)>,
 }
 
@@ -142,6 +143,8 @@ pub fn quality(
         });
         last_empty = Some((scene.clone(), empty));
     }
+    let reference = plan.reference.as_ref();
+    metadata.extend(reference.map(|scene| ("reference".to_owned(), scene.source.clone())));
     let (sweeps, columns) = (plan.sweeps.clone(), plan.columns());
     Ok(QualityTable { sweeps, columns, rows, draws: plan.draws, stats, metadata })
 }

@@ -284,3 +284,89 @@ fn seen<const N: usize>(leaf: &Leaf<N>, screen: Option<f64>) -> DVec3 {
         (_, None) => leaf.direction,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene_file;
+    use crate::trace::Tracer;
+    use std::path::Path;
+
+    /// A slab of glass before the photograph, 20 micrometers thick and a little askew, in light of a wavelength.
+    fn scene(wavelength_nm: f64) -> crate::scene::Scene {
+        let text = format!(
+            "[light]\nwavelength_nm = {wavelength_nm:?}\nbandwidth_nm = 2\n[[device]]\nkind = \"body\"\n\
+             shape = \"slab\"\nthickness = 0.002\nindex = 1.5\nrotation = 2\n"
+        );
+        scene_file::parse(&text, "scene", Path::new(""), &[]).expect("a scene").scene
+    }
+
+    /// Places and lengths between wavelengths are weighted means: at a wavelength they are its own, and light that
+    /// goes the same ways in all of them has the pairs that it has at its own wavelength.
+    #[test]
+    fn pairs_between_wavelengths_are_those_of_light_in_between() {
+        const WAVELENGTHS: [f64; 3] = [500.0, 550.0, 600.0];
+        let scenes = WAVELENGTHS.map(scene);
+        let prepared = scenes.each_ref().map(|scene| PreparedScene::new(scene).expect("sound"));
+        let detection = Detection::UNPOLARIZED;
+        let camera = &scenes[0].camera;
+        let ray = camera.ray(300.0, 500.0);
+        let (mut all, mut own) = (Vec::new(), Vec::new());
+        for prepared in &prepared {
+            let mut tracer =
+                Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+            let (leaves, _) = tracer.trace(&detection.launch(camera, &ray));
+            all.extend_from_slice(leaves);
+            let mut alone = Interference::default();
+            alone.pair_up(prepared, &detection, leaves, ray.origin);
+            own.push(alone.pairs);
+        }
+        let count = all.len() / WAVELENGTHS.len();
+        let mut interference = Interference::default();
+        interference.gather(&prepared[0], &detection, &all, count, ray.origin);
+        let ways: Vec<usize> = interference.gathered(WAVELENGTHS.len()).collect();
+        assert!(ways.len() >= 3 && ways.iter().all(|way| *way < count), "{ways:?}");
+        // At each wavelength, and at the middle one by those beside it.
+        for (at, weights) in
+            [(0, [1.0, 0.0, 0.0]), (1, [0.0, 1.0, 0.0]), (2, [0.0, 0.0, 1.0]), (1, [0.5, 0.0, 0.5])]
+        {
+            let coherence = prepared[at].coherence.expect("thin");
+            interference.pair_up_between(&coherence, &weights);
+            assert_eq!(interference.pairs.len(), own[at].len());
+            assert!(!own[at].is_empty());
+            for pair in &own[at] {
+                let same = interference.pairs.iter().find(|other| other.leaves == pair.leaves);
+                let off = (same.expect("the same pair").degree - pair.degree).norm();
+                assert!(off < 1e-8, "{at} {weights:?}: {off}");
+            }
+        }
+        // In light of another color the phases are others.
+        let differ = own[0].iter().zip(&own[2]).any(|(a, b)| (a.degree - b.degree).norm() > 0.1);
+        assert!(differ);
+    }
+
+    /// What is seen elsewhere, or is something else, interferes with nothing.
+    #[test]
+    fn leaves_that_see_different_things_are_not_gathered() {
+        let scene = scene(550.0);
+        let prepared = PreparedScene::new(&scene).expect("sound");
+        let detection = Detection::UNPOLARIZED;
+        let ray = scene.camera.ray(300.0, 500.0);
+        let mut tracer = Tracer::new(&prepared.assembly, prepared.limits);
+        let (leaves, _) = tracer.trace(&detection.launch(&scene.camera, &ray));
+        // Of two leaves on the photograph one goes elsewhere, by many pixels, or past it.
+        let seen = |leaf: &&Leaf<2>| leaf.distance_to(&prepared.screen).is_some();
+        let one = leaves.iter().find(seen).expect("a leaf on the photograph");
+        let mut interference = Interference::default();
+        let mut gathered = |move_by: DVec3, turn: DVec3| {
+            let mut other = *one;
+            other.position += move_by;
+            other.direction = (other.direction + turn).normalize();
+            interference.gather(&prepared, &detection, &[*one, other], 2, ray.origin);
+            interference.gathered(1).count()
+        };
+        assert_eq!(gathered(DVec3::ZERO, DVec3::ZERO), 2);
+        assert_eq!(gathered(5.0 * DVec3::Y, DVec3::ZERO), 0);
+        assert_eq!(gathered(DVec3::ZERO, -3.0 * DVec3::X), 0);
+    }
+}

@@ -280,6 +280,12 @@ fn entry<'a>(
     let count = items.len();
     let Ok(index) = key.parse::<usize>() else {
         let (word, key) = (key, quoted(key, '`'));
+        let axis = ["x", "y", "z"].iter().position(|axis| *axis == word).filter(|i| *i < count);
+        if let Some(number) = axis {
+            return Err(format!(
+                "the entries of {walked} have numbers and no names: {walked}.{number}"
+            ));
+        }
         if walked.as_str() != DEVICES {
             return Err(format!(
                 "{key} is not a number; the entries of {walked} are counted from 0: {walked}.0"

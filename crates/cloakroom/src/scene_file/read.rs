@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::NamedFiles;
 use super::error::SceneFileError;
 use super::locations::{Locations, join};
-use crate::device::{AnyDevice, CATALOGUE, Request};
+use crate::device::{AnyDevice, CATALOGUE, Request, entry};
 use crate::keys::{Key, KeyKind, Table, Value, hint, quoted, synonym, unknown};
 use crate::scene::{Camera, CameraSettings, DeviceSettings, Placement, Scene, TABLES};
 use cloakroom_trace::key;
@@ -43,7 +43,7 @@ pub(super) fn read(
             "trace" => &mut scene.trace,
             "picture" => &mut scene.picture,
             "receiver" => &mut scene.receiver,
-            _ => return Err(locations.error_at_key(&path, unknown_table(name))),
+            _ => return Err(locations.error_at_key(&path, unknown_table(name, root))),
         };
         let Some(entries) = value.as_table() else {
             let message = format!("{name} is {value}; it must be a table: [{name}]");
@@ -237,26 +237,45 @@ impl Reader<'_> {
 }
 
 /// The message for a name at the top of a scene that is no table of it.
-fn unknown_table(name: &str) -> String {
+fn unknown_table(name: &str, root: &Value) -> String {
+    let word = quoted(name, '`');
     // A bare key at the top was meant for a table that has it, or calls it otherwise, or for a device.
+    let devices = places_of_devices(root);
+    let is_key = |(_, keys): &(String, Vec<&str>)| keys.contains(&name);
     let home = TABLES.iter().find(|(_, keys)| keys.iter().any(|key| key.name == name));
-    if home.is_none() && Placement::KEYS.iter().any(|key| key.name == name) {
-        return format!("{} is a key of devices, as in {DEVICES}.0.{name}", quoted(name, '`'));
-    }
-    let meant = |(table, keys): &(&str, &[Key])| {
-        let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
-        synonym(name, &names).map(|key| format!("{table}.{key}"))
-    };
-    if let Some(meant) = TABLES.iter().find_map(meant).filter(|_| home.is_none() && name != KIND) {
-        return format!("there is no {}; here it is called `{meant}`", quoted(name, '`'));
-    }
     let home = match home {
         _ if name == KIND => Some("[[device]]".to_owned()),
         home => home.map(|(name, _)| format!("[{name}]")),
     };
     if let Some(home) = home {
-        return format!("{} stands outside of its table, {home}", quoted(name, '`'));
+        return format!("{word} stands outside of its table, {home}");
+    }
+    if let Some((place, _)) = devices.iter().find(|device| is_key(device)) {
+        return format!("{word} is a key of devices, as in {place}.{name}");
+    }
+    let tables = TABLES.iter().map(|&(table, keys)| {
+        (table.to_owned(), keys.iter().map(|key| key.name).collect::<Vec<_>>())
+    });
+    let meant = tables
+        .chain(devices)
+        .find_map(|(place, keys)| synonym(name, &keys).map(|key| format!("{place}.{key}")));
+    if let Some(meant) = meant {
+        return format!("there is no {word}; here it is called `{meant}`");
     }
     let known: Vec<_> = TABLES.iter().map(|&(name, _)| name).chain([DEVICES]).collect();
     unknown("table", name, "", &known)
+}
+
+/// Where the devices of a scene are, as in `device.0`, and the keys of each; of a scene without devices where
+/// one would be.
+fn places_of_devices(root: &Value) -> Vec<(String, Vec<&'static str>)> {
+    let devices = root.entry(DEVICES).and_then(Value::as_list).unwrap_or_default();
+    let kinds = devices.iter().map(|device| device.entry(KIND).and_then(Value::as_text));
+    let kinds: Vec<Option<&str>> = if devices.is_empty() { vec![None] } else { kinds.collect() };
+    let keys = |kind: Option<&str>| {
+        let own = kind.and_then(entry).map_or(&[][..], |entry| entry.keys);
+        Placement::KEYS.iter().chain(own).map(|key| key.name).collect()
+    };
+    let placed = kinds.into_iter().enumerate();
+    placed.map(|(number, kind)| (join(DEVICES, &number.to_string()), keys(kind))).collect()
 }

@@ -95,16 +95,28 @@ impl Keyframes {
         self.last as usize + 1
     }
 
-    /// What each key is, frame by frame: with more or fewer frames than are written all goes slower
-    /// or faster.
-    pub(super) fn sweeps(&self, frames: usize) -> Vec<Sweep> {
+    /// What each key is, frame by frame, and in which keyframe that is written: with more or fewer frames than
+    /// are written all goes slower or faster.
+    pub(super) fn sweeps(&self, frames: usize) -> Vec<(Sweep, Vec<f64>)> {
         let pace = if frames > 1 { self.last / (frames - 1) as f64 } else { 0.0 };
+        let times = || (0..frames).map(|frame| frame as f64 * pace);
         let sweep = |(key, values): &(String, Vec<(f64, Value)>)| {
-            let value = |frame| value_at(values, frame as f64 * pace, self.is_smooth);
-            Sweep::through(key.clone(), (0..frames).map(value).collect())
+            let at_times: Vec<Value> =
+                times().map(|time| value_at(values, time, self.is_smooth)).collect();
+            let written = times().zip(&at_times).map(|(time, value)| origin(values, time, value));
+            let written = written.collect();
+            (Sweep::through(key.clone(), at_times), written)
         };
         self.keys.iter().map(sweep).collect()
     }
+}
+
+/// The frame of the keyframe that a value at a time is of: the last one that has it, else the one that it is
+/// on its way to.
+fn origin(values: &[(f64, Value)], time: f64, value: &Value) -> f64 {
+    let next = values.partition_point(|(frame, _)| *frame <= time);
+    let last = values[..next].last().filter(|(frame, held)| *frame == time || held == value);
+    last.or_else(|| values[next..].first()).unwrap_or(&values[values.len() - 1]).0
 }
 
 /// The value at a time, given those at frames; lists go part by part.
@@ -177,11 +189,21 @@ mod tests {
         let path = keyframes(&format!("way = 'linear'\n{PATH}"));
         assert_eq!(path.frames(), 21);
         let sweeps = path.sweeps(21);
-        let at = |i: usize| sweeps.iter().map(|s| s.set(i).to_string()).collect::<Vec<_>>();
+        let at = |i: usize| sweeps.iter().map(|(s, _)| s.set(i).to_string()).collect::<Vec<_>>();
         assert_eq!(at(5), ["camera.position=[-75.0, 5.0, 0.0]", "device.0.show=\"cloak\""]);
         assert_eq!(at(20), ["camera.position=[-50.0, 0.0, 0.0]", "device.0.show=\"bare\""]);
         // Twice as fast.
-        assert_eq!(path.sweeps(11)[0].set(5).to_string(), "camera.position=[-50.0, 10.0, 0.0]");
+        assert_eq!(path.sweeps(11)[0].0.set(5).to_string(), "camera.position=[-50.0, 10.0, 0.0]");
+    }
+
+    #[test]
+    fn values_are_of_the_keyframe_that_writes_them() {
+        let text = "[[keyframe]]\nframe = 2\na = 1\n[[keyframe]]\nframe = 4\na = 3\nb = \"x\"\n\
+                    [[keyframe]]\nframe = 6\nb = \"y\"";
+        let sweeps = Keyframes::parse(text, "path.toml").expect("keyframes").sweeps(7);
+        // A number on its way is of the one where it goes to, a word of the one before.
+        assert_eq!(sweeps[0].1, [2.0, 2.0, 2.0, 4.0, 4.0, 4.0, 4.0]);
+        assert_eq!(sweeps[1].1, [4.0, 4.0, 4.0, 4.0, 4.0, 4.0, 6.0]);
     }
 
     #[test]

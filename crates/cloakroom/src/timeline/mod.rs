@@ -13,8 +13,8 @@ pub const MOST_FRAMES: usize = 100_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timeline {
     sweeps: Vec<Sweep>,
-    /// What keyframes change, written as sweeps.
-    keyframes: Vec<Sweep>,
+    /// What keyframes change, written as sweeps, and for each frame of the film that of the keyframe it is of.
+    keyframes: Vec<(Sweep, Vec<f64>)>,
     /// The file of the keyframes.
     file: String,
     /// How far the camera has gone round its target, frame by frame, degrees.
@@ -117,7 +117,7 @@ impl Timeline {
         let (orbit, frames) = (orbit.transpose()?, counted.ok_or(TimelineError::Still)?);
         let file = keyframes.map(|keyframes| keyframes.name.clone()).unwrap_or_default();
         let keyframes = keyframes.map(|keyframes| keyframes.sweeps(frames)).unwrap_or_default();
-        let all = || sweeps.iter().chain(&keyframes);
+        let all = || sweeps.iter().chain(keyframes.iter().map(|(sweep, _)| sweep));
         for (number, sweep) in all().enumerate() {
             if all().take(number).any(|other| other.key == sweep.key) {
                 return Err(SweepError::Twice(sweep.key.clone()).into());
@@ -148,9 +148,9 @@ impl Timeline {
     /// What a frame, counted from 0, changes in the scene, as in `device.0.rotation=3`.
     #[must_use]
     pub fn overrides(&self, frame: usize) -> Vec<Override> {
-        let keyed = self.keyframes.iter().map(|sweep| {
+        let keyed = self.keyframes.iter().map(|(sweep, written)| {
             let set = sweep.set(frame);
-            let words = format!("--keyframes {}, frame {frame}, {set}", self.file);
+            let words = format!("--keyframes {}, frame {}, {set}", self.file, written[frame]);
             set.by(words)
         });
         self.sweeps.iter().map(|sweep| sweep.set(frame)).chain(keyed).collect()

@@ -106,6 +106,11 @@ impl Joints<'_> {
         !self.any_is(at, |material| !matches!(material, MaterialAt::Air | MaterialAt::HiddenAir))
     }
 
+    /// Whether fronts are across rays at a point: the media there are isotropic.
+    fn is_isotropic(&self, at: DVec3) -> bool {
+        !self.any_is(at, |material| matches!(material, MaterialAt::Medium(m) if !m.is_isotropic()))
+    }
+
     /// Near, without metal between them.
     pub fn are_near(&self, a: &RayPoint, b: &RayPoint) -> bool {
         const BETWEEN: u32 = 16;
@@ -118,15 +123,29 @@ impl Joints<'_> {
             })
     }
 
-    /// Near and, in air, where fronts are across rays, across both: a ray that a mirror has sent back and
-    /// one that has missed it are of no front.
+    /// Near and, where fronts are across rays, across both: a ray that a mirror has sent back and one that has missed
+    /// it are of no front, nor are two of which one has missed a device that holds the other up.
     pub fn are_one(&self, a: &RayPoint, b: &RayPoint) -> bool {
-        /// The cosine of 73 degrees.
-        const STEEPEST: f64 = 0.3;
+        /// The cosine of 73 degrees: how steep the line from one to the other may be.
+        const STEEP: f64 = 0.3;
+        /// How far it may be from being across the mean of both: 7 degrees.
+        const ASKEW: f64 = 0.12;
         let chord = (b.at - a.at).normalize_or_zero();
-        let is_across = |point: &RayPoint| chord.dot(point.along).abs() < STEEPEST;
-        let are_across = is_across(a) && is_across(b);
-        (are_across || !self.is_air(a.at) || !self.is_air(b.at)) && self.are_near(a, b)
+        let mean = (a.along + b.along).normalize_or_zero();
+        let are_across = chord.dot(a.along).abs().max(chord.dot(b.along).abs()) < STEEP
+            && chord.dot(mean).abs() < ASKEW
+            && a.along.dot(b.along) > 0.0;
+        let [air_at_a, air_at_b] = [a.at, b.at].map(|at| self.is_air(at));
+        // At borders fronts have kinks, and of few rays in graded media they are coarse.
+        let fits = if a.branch == b.branch {
+            are_across || !air_at_a || !air_at_b
+        } else {
+            are_across
+                || air_at_a != air_at_b
+                || !self.is_isotropic(a.at)
+                || !self.is_isotropic(b.at)
+        };
+        fits && self.are_near(a, b)
     }
 }
 

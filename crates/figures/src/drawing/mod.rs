@@ -185,7 +185,6 @@ impl Drawing {
     }
 
     /// The elements of a class.
-    #[cfg(test)]
     pub(crate) fn of_class(&self, class: &str) -> impl Iterator<Item = &Element> {
         self.elements.iter().filter(move |element| element.class == class)
     }
@@ -234,6 +233,15 @@ impl Ink {
 }
 
 impl Words {
+    /// The corners of its box.
+    pub(crate) fn corners(&self) -> [DVec2; 4] {
+        let turn = DVec2::from_angle(-self.angle.to_radians());
+        let (left, height) = (-self.anchor * self.width(), 0.5 * self.size);
+        let right = left + self.width();
+        [(left, -height), (right, -height), (right, height), (left, height)]
+            .map(|corner| self.at + turn.rotate(DVec2::from(corner)))
+    }
+
     /// A horizontal line of text in the regular face, its middle at a point.
     #[must_use]
     pub fn new(text: impl Into<String>, at: DVec2, size: f64) -> Self {

@@ -8,17 +8,6 @@ use resvg::usvg::{Options, Tree};
 
 const RED: Ink = Ink::new([255, 0, 0]);
 
-impl Words {
-    /// The corners of its box.
-    pub(crate) fn corners(&self) -> [DVec2; 4] {
-        let turn = DVec2::from_angle(-self.angle.to_radians());
-        let (left, height) = (-self.anchor * self.width(), 0.5 * self.size);
-        let right = left + self.width();
-        [(left, -height), (right, -height), (right, height), (left, height)]
-            .map(|corner| self.at + turn.rotate(DVec2::from(corner)))
-    }
-}
-
 fn square(from: f64, to: f64) -> Vec<DVec2> {
     [(from, from), (to, from), (to, to), (from, to)].map(DVec2::from).to_vec()
 }

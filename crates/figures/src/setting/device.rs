@@ -2,6 +2,7 @@
 
 use super::super::color_scale::ColorScale;
 use super::super::drawing::{Drawing, Element, Face, Ink, Shape, Words};
+use super::layout::outline;
 use super::medium_axes::{MediumAxes, turned};
 use super::subject::{Subject, border, bounds, sides, turn};
 use super::view::View;
@@ -117,26 +118,60 @@ impl Sketch<'_> {
         }
     }
 
-    /// Draws its dimensions: the sides of polygons, height and width of what is curved; none of an
-    /// opaque body, and of what is seen from the side.
-    pub fn draw_dimensions(&mut self) {
+    /// Draws its dimensions where they can be read beside `others`: the sides of polygons, height and width of
+    /// what is curved; none of an opaque body, and of what is seen from the side.
+    pub fn draw_dimensions(&mut self, others: &[&Subject<'_>]) {
         let section = &self.subject.section;
         if self.subject.is_opaque() || section.is_shadow {
             return;
         }
         let mut told = Vec::new();
         for contour in &section.outlines {
-            self.measure(contour, &mut told, 1.0);
+            self.measure(contour, &mut told, 1.0, others);
         }
         let inner = section.metal.iter().filter(|contour| !section.outlines.contains(contour));
         for contour in inner {
-            self.measure(contour, &mut told, -1.0);
+            self.measure(contour, &mut told, -1.0, others);
         }
+    }
+
+    /// Whether a label would lie on no other one, on none of `others` that do not hold the device, and not on the
+    /// device itself if it is outside of it (`way` 1).
+    fn can_be_read(&self, label: &Words, way: f64, others: &[&Subject<'_>]) -> bool {
+        let corners = label.corners();
+        let place = outline(&corners);
+        let labels = ["dimension-label", "index"].into_iter();
+        let is_apart = |element: &Element| match &element.shape {
+            Shape::Words(words) => !outline(&words.corners()).overlaps(&place, 0.0),
+            _ => true,
+        };
+        // Here and there on it.
+        let middle = label.at;
+        let points = corners.iter().flat_map(|corner| [*corner, corner.midpoint(middle)]);
+        let points: Vec<DVec2> = points.chain([middle]).collect();
+        let around = |other: &Subject<'_>| {
+            other.bounds().zip(self.subject.bounds()).is_some_and(|([from, to], [low, high])| {
+                from.cmple(low).all() && high.cmple(to).all()
+            })
+        };
+        let own = (way > 0.0).then_some(self.subject);
+        let others = others.iter().filter(|other| !around(other)).copied().chain(own);
+        labels.flat_map(|class| self.drawing.of_class(class)).all(is_apart)
+            && others
+                .flat_map(|other| other.places(self.view, &other.section.outlines))
+                .map(|points| Contour { points, closed: true })
+                .all(|shape| !points.iter().any(|point| shape.surrounds(*point)))
     }
 
     /// Measures a contour, from outside (`way` 1) or from within (-1). Lengths that have been told
     /// are not told again.
-    fn measure(&mut self, contour: &Contour, told: &mut Vec<f64>, way: f64) {
+    fn measure(
+        &mut self,
+        contour: &Contour,
+        told: &mut Vec<f64>,
+        way: f64,
+        others: &[&Subject<'_>],
+    ) {
         let corners = contour.corners();
         let points = self.subject.on_sheet(self.view, &corners);
         let Some([low, high]) = bounds(points.iter().copied()) else { return };
@@ -175,10 +210,12 @@ impl Sketch<'_> {
         order.truncate(points.len() - usize::from(!contour.closed));
         order.sort_by(|(a, _), (b, _)| liked(*b).total_cmp(&liked(*a)));
         for ((a, b), length) in order {
-            if a.distance(b) > 1.5 * TEXT && is_new(length) {
-                let shift = way * SHIFT * outward((a, b));
+            let shift = way * SHIFT * outward((a, b));
+            let label = dimension::label([a, b], shift, &centimetres(length));
+            if a.distance(b) > 1.5 * TEXT && self.can_be_read(&label, way, others) && is_new(length)
+            {
                 let ground = if way < 0.0 { METAL } else { PAPER };
-                dimension::draw(self.drawing, [a, b], shift, &centimetres(length), ground);
+                dimension::draw(self.drawing, [a, b], shift, label, ground);
             }
         }
     }
@@ -207,12 +244,16 @@ impl Sketch<'_> {
                 if round { format!("Ø {}", centimetres(size.x)) } else { centimetres(size.x) };
             let ends = [at(low.x, low.y), at(high.x, low.y)];
             let down = (at(middle.x, low.y) - at(middle.x, high.y)).normalize_or(DVec2::Y);
-            dimension::draw(self.drawing, ends, SHIFT * down, &label, PAPER);
+            let shift = SHIFT * down;
+            let label = dimension::label(ends, shift, &label);
+            dimension::draw(self.drawing, ends, shift, label, PAPER);
         }
         if !round && is_new(size.y) {
             let ends = [at(high.x, low.y), at(high.x, high.y)];
             let right = (at(high.x, middle.y) - at(low.x, middle.y)).normalize_or(DVec2::X);
-            dimension::draw(self.drawing, ends, SHIFT * right, &centimetres(size.y), PAPER);
+            let shift = SHIFT * right;
+            let label = dimension::label(ends, shift, &centimetres(size.y));
+            dimension::draw(self.drawing, ends, shift, label, PAPER);
         }
     }
 }

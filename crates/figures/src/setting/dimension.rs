@@ -7,13 +7,20 @@ use glam::DVec2;
 /// The length of an arrow head.
 pub(crate) const HEAD: f64 = 11.0;
 
+/// The label of a dimension line beside the line from `a` to `b` (both on the sheet), shifted by `shift`: beyond it.
+pub(super) fn label([a, b]: [DVec2; 2], shift: DVec2, text: &str) -> Words {
+    let outward = shift.normalize_or(DVec2::Y);
+    let at = (a + b) / 2.0 + shift + 0.66 * TEXT * outward;
+    Words::new(text, at, TEXT).turned(upright(b - a))
+}
+
 /// Draws a dimension line beside the line from `a` to `b` (both on the sheet), shifted by `shift`,
-/// with its label beyond it on a ground of that colour.
+/// with its label on a ground of that colour.
 pub(super) fn draw(
     drawing: &mut Drawing,
     [a, b]: [DVec2; 2],
     shift: DVec2,
-    label: &str,
+    label: Words,
     ground: Ink,
 ) {
     let outward = shift.normalize_or(DVec2::Y);
@@ -22,8 +29,7 @@ pub(super) fn draw(
         drawing.add_line("extension", line, (INK, 0.7 * THIN));
     }
     double_arrow(drawing, "dimension", [a + shift, b + shift]);
-    let words = Words::new(label, (a + b) / 2.0 + shift + 0.66 * TEXT * outward, TEXT);
-    write(drawing, "dimension-label", words.turned(upright(b - a)), ground);
+    write(drawing, "dimension-label", label, ground);
 }
 
 /// The angle in degrees of text along a line of the sheet that nobody has to read upside down.

@@ -178,7 +178,14 @@ fn place_of_axes(sheet: DVec2, window: [DVec2; 2], taken: &[Vec<DVec2>]) -> DVec
         ((left + right) / 2.0, bottom),
     ]
     .map(DVec2::from);
-    let free = places.into_iter().find(|at| is_free([*at, AXES], taken));
+    // Else anywhere, from the left.
+    const STEPS: u32 = 24;
+    let [most, steps] = [DVec2::new(right, bottom), DVec2::splat(f64::from(STEPS))];
+    let anywhere = (0..=STEPS).flat_map(|column| {
+        (0..=STEPS).rev().map(move |row| DVec2::new(f64::from(column), f64::from(row)))
+    });
+    let anywhere = anywhere.map(|step| left + (most - left) * step / steps);
+    let free = places.into_iter().chain(anywhere).find(|at| is_free([*at, AXES], taken));
     free.unwrap_or(places[0])
 }
 
@@ -269,7 +276,7 @@ fn is_free(part: [DVec2; 2], taken: &[Vec<DVec2>]) -> bool {
 }
 
 /// A convex shape of the sheet as an outline, which runs counterclockwise with y up.
-fn outline(shape: &[DVec2]) -> Outline {
+pub(super) fn outline(shape: &[DVec2]) -> Outline {
     let mut points: Vec<DVec2> = shape.iter().map(|p| DVec2::new(p.x, -p.y)).collect();
     if turn(&points) < 0.0 {
         points.reverse();

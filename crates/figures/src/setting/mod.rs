@@ -164,7 +164,10 @@ impl<'s> Devices<'s> {
                 !std::ptr::eq(*other, *subject) && subject.is_crowded_by(other, view)
             };
             if !shown.iter().enumerate().any(is_inner) && !shown.iter().any(crowds) {
-                Sketch { drawing, view, subject }.draw_dimensions();
+                let others = shown.iter().map(|(other, _)| *other);
+                let others: Vec<_> =
+                    others.filter(|other| !std::ptr::eq(*other, *subject)).collect();
+                Sketch { drawing, view, subject }.draw_dimensions(&others);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::super::drawing::{Drawing, Face, Shape, Words};
 use super::super::shrink::srgb;
-use super::subject::{Subject, bounds};
+use super::subject::{Subject, bounds, sides};
 use super::view::View;
 use super::{BLUE, GRAY, INK, PAPER, SKY, TEXT, THICK, THIN, centimetres, dimension, write};
 use cloakroom::assembly::Screen;
@@ -101,9 +101,15 @@ impl Stage {
         let back = self.forward.map_or(DVec2::ZERO, |f| 0.5 * EYE * DVec2::new(-f.x, f.y));
         let words = name("camera", eye + back + DVec2::Y * (0.62 * EYE + 0.6 * TEXT));
         write(drawing, "camera-label", words, PAPER);
-        let lowest =
-            self.photograph().into_iter().map(|p| view.place(p).y).fold(f64::MIN, f64::max);
-        let foot = view.place(self.screen.middle.truncate()).x;
+        let corners = self.photograph().map(|p| view.place(p));
+        let lowest = corners.iter().map(|p| p.y).fold(f64::MIN, f64::max);
+        // Below the foot, which of one that leans is not below its middle.
+        let [left, right] = [f64::min, f64::max].map(|end| {
+            let foot = corners.iter().filter(|p| p.y > lowest - TEXT).map(|p| p.x);
+            foot.reduce(end).unwrap_or_default()
+        });
+        let middle = view.place(self.screen.middle.truncate()).x;
+        let foot = middle.clamp(left, right);
         let words = name("photograph", DVec2::new(foot, lowest + 0.9 * TEXT));
         write(drawing, "photograph-label", words, PAPER);
     }
@@ -112,9 +118,16 @@ impl Stage {
     /// above the view. Opaque bodies are scenery, and left out.
     pub fn draw_distances(&self, drawing: &mut Drawing, view: &View, subjects: &[Subject<'_>]) {
         let row = view.window[0].y - 0.8 * TEXT;
-        let (x, top) = (self.screen.middle.x, self.screen.point(1.0, 0.0).truncate());
+        let (x, middle) = (self.screen.middle.x, view.place(self.screen.middle.truncate()));
+        // Down to where the photograph begins there.
+        let corners = self.photograph().map(|p| view.place(p));
+        let crossed = sides(&corners).filter_map(|(a, b)| {
+            let share = (middle.x - a.x) / (b.x - a.x);
+            (0.0..=1.0).contains(&share).then_some(a.y + share * (b.y - a.y))
+        });
+        let top = crossed.fold(middle.y, f64::min);
         let eye = view.place(self.eye) - DVec2::Y * 0.6 * EYE;
-        let mut stations = vec![(self.eye.x, eye.y), (x, view.place(top).y)];
+        let mut stations = vec![(self.eye.x, eye.y), (x, top)];
         let measured = |subject: &&Subject<'_>| subject.bounds().is_some() && !subject.is_opaque();
         for subject in subjects.iter().filter(measured) {
             let centre = view.place(subject.origin());

@@ -253,8 +253,14 @@ fn variants() -> Vec<(String, Setting)> {
 fn every_device_can_be_drawn_and_labels_are_apart() {
     for (text, setting) in variants() {
         let sheet = setting.drawing.size;
-        let names =
-            ["camera-label", "photograph-label", "distance-label", "tick-label", "coordinate-name"];
+        let names = [
+            "camera-label",
+            "photograph-label",
+            "distance-label",
+            "dimension-label",
+            "tick-label",
+            "coordinate-name",
+        ];
         let written: Vec<&Element> =
             names.iter().flat_map(|class| setting.drawing.of_class(class)).collect();
         for (i, a) in written.iter().enumerate() {

@@ -36,17 +36,17 @@ impl Medium {
     /// ```
     #[must_use]
     pub fn causal_group_index(&self, wave_vector: DVec3, electric: ComplexVector) -> f64 {
-        if self.absorbs() {
-            return f64::NAN;
-        }
-        let energy = |tensor: &DMat3, field: ComplexVector| {
-            let least = least_dispersive(tensor);
-            field.re.dot(least * field.re) + field.im.dot(least * field.im)
-        };
-        let magnetic = self.magnetic_field(wave_vector, electric);
-        let energy =
-            energy(&self.real.permittivity, electric) + energy(&self.real.permeability, magnetic);
-        energy / (2.0 * poynting(electric, magnetic).length())
+        self.least_dispersive().map_or(f64::NAN, |[permittivity, permeability]| {
+            self.group_index(wave_vector, electric, [&permittivity, &permeability])
+        })
+    }
+
+    /// d(ωε)/dω and d(ωµ)/dω at the least dispersion that causality allows, for [`Self::group_index`]; none where the
+    /// medium absorbs.
+    #[must_use]
+    pub fn least_dispersive(&self) -> Option<[Tensor; 2]> {
+        let tensors = [self.real.permittivity, self.real.permeability];
+        (!self.absorbs()).then(|| tensors.map(|tensor| least_dispersive(&tensor).into()))
     }
 
     /// The same by the medium's own law, given as d(ωε)/dω and d(ωµ)/dω. Where it absorbs there is

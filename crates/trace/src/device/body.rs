@@ -6,8 +6,8 @@
 //! air between.
 
 use super::{
-    Body, Coating, Convex, Device, DispersiveMedium, Fact, FarSide, HomogeneousRegion, Hull,
-    MediumWords, Region, RegionBorder, Request, Shape, Structure, Surface,
+    Body, Convex, Device, DispersiveMedium, Fact, FarSide, HomogeneousRegion, Hull, MediumWords,
+    Region, RegionBorder, Request, Shape, Structure, Surface,
 };
 use crate::key;
 use crate::keys::{Given, KeyError, ValueRange};
@@ -92,10 +92,9 @@ impl Device for SolidBody {
             || (self.shape == BodyShape::Cylinder && request.length.is_none());
         KeyError::refuse_if(pictured && endless, key!(Self.surface), message)?;
         let body = Body { shape, priority: self.priority };
-        let group_index = self.group_index;
-        let region = |DispersiveMedium { medium, law }| {
-            let border = RegionBorder::Convex(shape);
-            HomogeneousRegion { medium, law, group_index, border, coating: Coating::None }
+        let region = |medium: DispersiveMedium| HomogeneousRegion {
+            group_index: self.group_index,
+            ..HomogeneousRegion::new(medium, RegionBorder::Convex(shape))
         };
         let regions = medium.into_iter().map(region).map(Region::Homogeneous).collect();
         let surfaces = vec![Surface::new(Shape::Convex(shape), far)];

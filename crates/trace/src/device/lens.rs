@@ -1,7 +1,7 @@
 //! Lenses: two spherical or conic faces on a round edge, of any homogeneous medium.
 
 use super::{
-    Coating, Device, DispersiveMedium, Fact, FarSide, HomogeneousRegion, Hull, MediumWords, Region,
+    Device, DispersiveMedium, Fact, FarSide, HomogeneousRegion, Hull, MediumWords, Region,
     RegionBorder, Request, Shape, Structure, Surface,
 };
 use crate::key;
@@ -54,13 +54,10 @@ impl Device for GlassLens {
         let message = "length is given; a lens has its `thickness` and `diameter`";
         KeyError::refuse_if(request.length.is_some(), key!(Request.length), message)?;
         let lens = self.lens()?;
-        let DispersiveMedium { medium, law } = self.medium(request.wavelength_nm)?;
+        let medium = self.medium(request.wavelength_nm)?;
         let region = HomogeneousRegion {
-            medium,
-            law,
             group_index: self.group_index,
-            border: RegionBorder::Lens(lens),
-            coating: Coating::None,
+            ..HomogeneousRegion::new(medium, RegionBorder::Lens(lens))
         };
         let surface = |part| Surface::new(Shape::OfLens { lens, part }, FarSide::Region(0));
         let hull = Hull::new(Solid::Lens { lens, pose: Pose::IDENTITY });

@@ -5,8 +5,8 @@
 
 use super::coating::reversed;
 use super::{
-    Coating, DispersiveMedium, Face, FarSide, HomogeneousRegion, Hull, Region, Shape, Structure,
-    Surface,
+    Coating, DispersiveMedium, Face, FarSide, HomogeneousRegion, Hull, Region, RegionBorder, Shape,
+    Structure, Surface,
 };
 use glam::DVec2;
 use optics::geometry::{Cap, ConvexPart, Extent, Outline, Plane, Polygon, SAME_POINT, Solid, Wall};
@@ -123,8 +123,8 @@ pub(super) fn polygonal(
             let cap = Surface::new(Shape::Cap(cap), piece.itself);
             surfaces.push(Surface { coating: entering, ..cap });
         }
-        if let Some(DispersiveMedium { medium, law }) = parts[piece.part].medium {
-            let region = HomogeneousRegion { law, ..HomogeneousRegion::between(medium, faces) };
+        if let Some(medium) = parts[piece.part].medium {
+            let region = HomogeneousRegion::new(medium, RegionBorder::Faces(faces));
             regions.push(Region::Homogeneous(region));
         }
     }

@@ -3,7 +3,7 @@
 
 use super::graded::here;
 use super::{
-    Coating, Device, DispersiveMedium, Fact, FarSide, HomogeneousRegion, Hull, MediumWords, Region,
+    Device, DispersiveMedium, Fact, FarSide, HomogeneousRegion, Hull, MediumWords, Region,
     RegionBorder, Request, Shape, Structure, Surface,
 };
 use crate::key;
@@ -58,12 +58,9 @@ impl Device for FacetedSolid {
         KeyError::refuse_if(request.length.is_some(), key!(Request.length), message)?;
         let solid = self.solid()?;
         let (far, medium) = self.filling(request)?;
-        let region = |DispersiveMedium { medium, law }| HomogeneousRegion {
-            medium,
-            law,
+        let region = |medium: DispersiveMedium| HomogeneousRegion {
             group_index: self.group_index,
-            border: RegionBorder::Polyhedron(Arc::clone(&solid)),
-            coating: Coating::None,
+            ..HomogeneousRegion::new(medium, RegionBorder::Polyhedron(Arc::clone(&solid)))
         };
         let regions = medium.into_iter().map(region).map(Region::Homogeneous).collect();
         let surfaces = vec![Surface::new(Shape::OfPolyhedron(Arc::clone(&solid)), far)];

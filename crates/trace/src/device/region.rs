@@ -1,7 +1,8 @@
 //! Regions of a device, each filled with one medium.
 
 use super::{
-    ClosedFormRegion, Coating, Convex, Dispersion, DispersiveTensors, FarSide, SpatialRegion,
+    ClosedFormRegion, Coating, Convex, Dispersion, DispersiveMedium, DispersiveTensors, FarSide,
+    SpatialRegion,
 };
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::{Lens, Plane, Polyhedron};
@@ -67,7 +68,9 @@ pub struct HomogeneousRegion {
     pub medium: Medium,
     /// How the medium depends on the frequency; `None`: as the dispersion of the device says.
     pub law: Option<DispersiveTensors>,
-    /// The speed of light over that of a pulse, which comes before both; absent: as they say.
+    /// How it does at the least dispersion that causality allows; `None` where it absorbs.
+    pub least_dispersive: Option<DispersiveTensors>,
+    /// The speed of light over that of a pulse, which comes before all these; absent: as they say.
     pub group_index: Option<f64>,
     /// Where it ends.
     pub border: RegionBorder,
@@ -226,10 +229,12 @@ impl Region {
         if let Self::Homogeneous(HomogeneousRegion { group_index: Some(index), .. }) = self {
             return index * straight;
         }
+        let by_law = |medium: &Medium, law: &DispersiveTensors| {
+            let derivatives = [&law.permittivity, &law.permeability];
+            straight * medium.group_index(ray.wave_vector, electric, derivatives)
+        };
         if let Self::Homogeneous(HomogeneousRegion { law: Some(law), medium, .. }) = self {
-            let DispersiveTensors { permittivity, permeability } = law;
-            let derivatives = [permittivity, permeability];
-            return straight * medium.group_index(ray.wave_vector, electric, derivatives);
+            return by_law(medium, law);
         }
         if dispersion == Dispersion::None {
             // Where the phase runs backwards a pulse does not.
@@ -237,8 +242,8 @@ impl Region {
             return if end.optical_path < 0.0 { backwards } else { end.optical_path };
         }
         match self {
-            Self::Homogeneous(region) => {
-                straight * region.medium.causal_group_index(ray.wave_vector, electric)
+            Self::Homogeneous(HomogeneousRegion { least_dispersive, medium, .. }) => {
+                least_dispersive.as_ref().map_or(f64::NAN, |law| by_law(medium, law))
             }
             Self::Conformal(region) if region.loss_tangent == 0.0 => {
                 let path = || {
@@ -337,7 +342,7 @@ impl Region {
             Self::Homogeneous(region) => region.advance(ray),
             Self::Conformal(region) => {
                 let [passage, ..] =
-                    region.advance_four(&[Some(*ray), None, None, None], tolerance, false);
+                    region.advance_four(&[Some(*ray), None, None, None], tolerance, None);
                 return passage.unwrap_or(Err(NoPassage::Lost));
             }
             Self::Radial(region) => region.advance(ray),
@@ -348,13 +353,14 @@ impl Region {
     }
 
     /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what
-    /// it would get alone; with `pulses` what a pulse takes, too, where that is known from the way.
+    /// it would get alone; with `pulses` what a pulse takes, too, where that is known from the way to within so many
+    /// cm.
     #[must_use]
     pub fn advance_four(
         &self,
         rays: &[Option<InnerRay>; 4],
         tolerance: f64,
-        pulses: bool,
+        pulses: Option<f64>,
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         match self {
             Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) | Self::Spatial(_) => {
@@ -420,11 +426,19 @@ impl Region {
 }
 
 impl HomogeneousRegion {
+    /// A region of a medium, without films.
+    #[must_use]
+    pub fn new(DispersiveMedium { medium, law }: DispersiveMedium, border: RegionBorder) -> Self {
+        let least_dispersive = medium
+            .least_dispersive()
+            .map(|[permittivity, permeability]| DispersiveTensors { permittivity, permeability });
+        Self { medium, law, least_dispersive, group_index: None, border, coating: Coating::None }
+    }
+
     /// A region between bare planes.
     #[must_use]
     pub fn between(medium: Medium, faces: Vec<Face>) -> Self {
-        let border = RegionBorder::Faces(faces);
-        Self { medium, law: None, group_index: None, border, coating: Coating::None }
+        Self::new(medium.into(), RegionBorder::Faces(faces))
     }
 
     /// The planes that bound it; none where it is bounded otherwise.
@@ -537,10 +551,11 @@ impl ConformalRegion {
         &self,
         rays: &[Option<InnerRay>; 4],
         tolerance: f64,
-        pulses: bool,
+        pulses: Option<f64>,
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         let starts = rays.map(|ray| Some((self.start(&ray?)?, ray?.wave_vector)));
-        let ends = self.flow.advance_four(&starts, tolerance, pulses);
+        let known = pulses.is_some_and(|to| to >= ConformalFlow::KNOWN_TO);
+        let ends = self.flow.advance_four(&starts, tolerance, known);
         std::array::from_fn(|i| {
             let ray = rays[i].as_ref()?;
             Some(match ends[i].as_ref() {

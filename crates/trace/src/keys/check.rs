@@ -310,7 +310,14 @@ impl Key {
 
     /// The message about a value of a wrong type: what it is, and what it must be.
     pub fn wrong_type(&self, value: &Value) -> String {
-        format!("{} is {value}; it must be {}", self.name, self.describe())
+        // A list without its brackets is a word.
+        let numbers = value.as_text().and_then(|text| {
+            let number = |part: &str| part.trim().parse().ok().map(Value::Number);
+            text.split(',').map(number).collect()
+        });
+        let list = numbers.map(Value::List).filter(|list| self.check(list).is_ok());
+        let hint = list.map(|list| format!(", in brackets: {list}")).unwrap_or_default();
+        format!("{} is {value}; it must be {}{hint}", self.name, self.describe())
     }
 
     fn choose(&self, value: &Value, options: &[&'static str]) -> Result<Value, String> {

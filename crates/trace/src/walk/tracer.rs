@@ -7,7 +7,6 @@ use crate::assembly::{Assembly, Screen};
 use crate::device::{InnerRay, NoPassage, Passage};
 use glam::DVec3;
 use optics::interface::OutgoingWaves;
-use optics::propagation::ConformalFlow;
 use optics::wave::ComplexVector;
 
 /// A ray to launch, with `N` polarizations at once.
@@ -304,7 +303,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         rays: &[Option<InnerRay>; 4],
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         let region = self.assembly.device(device).region(region);
-        let pulses = self.group_delays && self.pulse_tolerance() >= ConformalFlow::KNOWN_TO;
+        let pulses = self.group_delays.then(|| self.pulse_tolerance());
         region.advance_four(rays, self.limits.tolerance, pulses)
     }
 

@@ -55,7 +55,7 @@ pub enum MeshFault {
     #[error("it is flat: it bounds no volume")]
     Flat,
     /// Two triangles cross.
-    #[error("it crosses itself near {}", text(*.0))]
+    #[error("it crosses itself near {}; make one surface of what overlaps there", text(*.0))]
     Crossing(DVec3),
     /// One part of it lies in another, and shows the wrong side.
     #[error(

@@ -1,5 +1,5 @@
 use super::*;
-use crate::device::built;
+use crate::device::{Coating, built};
 
 fn refused(lens: &GlassLens) -> String {
     lens.build(Request::default()).expect_err("no lens").to_string()
