@@ -334,7 +334,7 @@ fn what_cannot_be_given_is_said() {
         (format!("{SQUARE}show = \"bare\""), "bare metal"),
         ("[[device]]\nkind = \"mirror-detour\"".to_owned(), "metal alone"),
         ("[[device]]\nkind = \"body\"\nsurface = { color = [1, 1, 1] }".to_owned(), "opaque"),
-        (format!("{SQUARE}{SQUARE}position = [40, 0, 0]"), "which one"),
+        (format!("{SQUARE}{SQUARE}position = [40, 0, 0]"), "device 0, device 1"),
         ("[camera]\nseed = 1".to_owned(), "no device 0"),
     ] {
         let error = sampled(&scene, Frame::Device, Resolution::Default).expect_err("must fail");

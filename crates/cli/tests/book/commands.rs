@@ -1,7 +1,7 @@
 //! Every command of the book and the README is run, at reduced size, in a folder of its own; every
 //! scene is checked.
 
-use super::page::{Page, pages};
+use super::page::{Page, pages, root};
 use crate::running::{cloakroom, paper};
 use std::env;
 use std::fs::{self, Permissions};
@@ -175,6 +175,10 @@ fn commands(page: &Page) -> Vec<String> {
 fn furnish(folder: &Path) {
     let scenes = folder.join("scenes");
     cloakroom().args(["scenes", "--out"]).arg(scenes).assert().success();
+    // The README shows a picture of its own through a cloak.
+    let picture = "docs/cloaked.png";
+    fs::create_dir(folder.join("docs")).unwrap();
+    fs::copy(root().join(picture), folder.join(picture)).unwrap();
     let bin = folder.join("bin");
     fs::create_dir(&bin).unwrap();
     let small = bin.join("cloakroom");

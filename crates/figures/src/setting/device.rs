@@ -18,6 +18,13 @@ const SHIFT: f64 = 15.0;
 /// Contours of more corners than this are curves: their sides are not measured.
 const MOST_CORNERS: usize = 8;
 
+/// What stands beside a device that is measured.
+pub(super) struct Neighbours<'a> {
+    pub devices: Vec<&'a Subject<'a>>,
+    /// What will be written there.
+    pub labels: &'a [Words],
+}
+
 /// A device, and where it is drawn.
 pub(super) struct Sketch<'a> {
     pub drawing: &'a mut Drawing,
@@ -120,7 +127,7 @@ impl Sketch<'_> {
 
     /// Draws its dimensions where they can be read beside `others`: the sides of polygons, height and width of
     /// what is curved; none of an opaque body, and of what is seen from the side.
-    pub fn draw_dimensions(&mut self, others: &[&Subject<'_>]) {
+    pub fn draw_dimensions(&mut self, others: &Neighbours<'_>) {
         let section = &self.subject.section;
         if self.subject.is_opaque() || section.is_shadow {
             return;
@@ -137,12 +144,13 @@ impl Sketch<'_> {
 
     /// Whether a label would lie on no other one, on none of `others` that do not hold the device, and not on the
     /// device itself if it is outside of it (`way` 1).
-    fn can_be_read(&self, label: &Words, way: f64, others: &[&Subject<'_>]) -> bool {
+    fn can_be_read(&self, label: &Words, way: f64, others: &Neighbours<'_>) -> bool {
         let corners = label.corners();
         let place = outline(&corners);
         let labels = ["dimension-label", "index"].into_iter();
+        let is_clear = |words: &Words| !outline(&words.corners()).overlaps(&place, 0.0);
         let is_apart = |element: &Element| match &element.shape {
-            Shape::Words(words) => !outline(&words.corners()).overlaps(&place, 0.0),
+            Shape::Words(words) => is_clear(words),
             _ => true,
         };
         // Here and there on it.
@@ -155,9 +163,10 @@ impl Sketch<'_> {
             })
         };
         let own = (way > 0.0).then_some(self.subject);
-        let others = others.iter().filter(|other| !around(other)).copied().chain(own);
+        let devices = others.devices.iter().filter(|other| !around(other)).copied().chain(own);
         labels.flat_map(|class| self.drawing.of_class(class)).all(is_apart)
-            && others
+            && others.labels.iter().all(is_clear)
+            && devices
                 .flat_map(|other| other.places(self.view, &other.section.outlines))
                 .map(|points| Contour { points, closed: true })
                 .all(|shape| !points.iter().any(|point| shape.surrounds(*point)))
@@ -170,7 +179,7 @@ impl Sketch<'_> {
         contour: &Contour,
         told: &mut Vec<f64>,
         way: f64,
-        others: &[&Subject<'_>],
+        others: &Neighbours<'_>,
     ) {
         let corners = contour.corners();
         let points = self.subject.on_sheet(self.view, &corners);
@@ -184,7 +193,7 @@ impl Sketch<'_> {
             new
         };
         if corners.len() > MOST_CORNERS {
-            self.measure_curve(contour, way, is_new);
+            self.measure_curve(contour, way, is_new, others);
             return;
         }
         // A dimension within needs room for its label.
@@ -221,7 +230,13 @@ impl Sketch<'_> {
     }
 
     /// Measures a curve: how wide and how high it is in the frame of its device.
-    fn measure_curve(&mut self, contour: &Contour, way: f64, mut is_new: impl FnMut(f64) -> bool) {
+    fn measure_curve(
+        &mut self,
+        contour: &Contour,
+        way: f64,
+        mut is_new: impl FnMut(f64) -> bool,
+        others: &Neighbours<'_>,
+    ) {
         let Some([low, high]) = bounds(contour.points.iter().copied()) else { return };
         let (view, subject) = (self.view, self.subject);
         let at = |x: f64, y: f64| subject.place(view, DVec2::new(x, y));
@@ -246,14 +261,18 @@ impl Sketch<'_> {
             let down = (at(middle.x, low.y) - at(middle.x, high.y)).normalize_or(DVec2::Y);
             let shift = SHIFT * down;
             let label = dimension::label(ends, shift, &label);
-            dimension::draw(self.drawing, ends, shift, label, PAPER);
+            if self.can_be_read(&label, 0.0, others) {
+                dimension::draw(self.drawing, ends, shift, label, PAPER);
+            }
         }
         if !round && is_new(size.y) {
             let ends = [at(high.x, low.y), at(high.x, high.y)];
             let right = (at(high.x, middle.y) - at(low.x, middle.y)).normalize_or(DVec2::X);
             let shift = SHIFT * right;
             let label = dimension::label(ends, shift, &centimetres(size.y));
-            dimension::draw(self.drawing, ends, shift, label, PAPER);
+            if self.can_be_read(&label, 0.0, others) {
+                dimension::draw(self.drawing, ends, shift, label, PAPER);
+            }
         }
     }
 }

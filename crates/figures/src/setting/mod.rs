@@ -24,7 +24,7 @@ use super::quantity::{short, with_minus};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{PreparedScene, PreparedSceneError, metadata};
 use cloakroom::scene::Scene;
-use device::Sketch;
+use device::{Neighbours, Sketch};
 use glam::DVec2;
 use layout::Layout;
 use stage::Stage;
@@ -95,7 +95,8 @@ pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
     let order = Subject::from_back(subjects);
     let whole: Vec<_> =
         order.iter().map(|index| (&subjects[*index], !layout.is_magnified(*index))).collect();
-    devices.draw_measured(&mut drawing, &layout.view, &whole);
+    let labels = stage.labels(&layout.view);
+    devices.draw_measured(&mut drawing, &layout.view, &whole, &labels);
     for inset in &layout.insets {
         inset.draw_frame(&mut drawing, &layout.view);
     }
@@ -106,7 +107,7 @@ pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
         let is_in = |index: &&usize| inset.group.subjects.contains(*index);
         let shown: Vec<_> =
             order.iter().filter(is_in).map(|index| (&subjects[*index], true)).collect();
-        devices.draw_measured(&mut drawing, &inset.view, &shown);
+        devices.draw_measured(&mut drawing, &inset.view, &shown, &[]);
         legend::draw(&mut drawing, inset.legend, &shown);
     }
     devices.draw_bar(&mut drawing, layout.bar);
@@ -153,8 +154,14 @@ impl<'s> Devices<'s> {
 
     /// Draws devices from back to front, and where it says so in detail: with the axes of their
     /// media and, before everything else so that they can be read, their dimensions, where there is room
-    /// between them.
-    fn draw_measured(&self, drawing: &mut Drawing, view: &View, shown: &[(&Subject<'_>, bool)]) {
+    /// between them and beside `labels`.
+    fn draw_measured(
+        &self,
+        drawing: &mut Drawing,
+        view: &View,
+        shown: &[(&Subject<'_>, bool)],
+        labels: &[Words],
+    ) {
         self.draw_shapes(drawing, view, shown);
         for (place, (subject, _)) in shown.iter().enumerate().filter(|(_, (_, detail))| *detail) {
             let is_inner = |(other, (around, _)): (usize, &(&Subject<'_>, bool))| {
@@ -164,9 +171,9 @@ impl<'s> Devices<'s> {
                 !std::ptr::eq(*other, *subject) && subject.is_crowded_by(other, view)
             };
             if !shown.iter().enumerate().any(is_inner) && !shown.iter().any(crowds) {
-                let others = shown.iter().map(|(other, _)| *other);
-                let others: Vec<_> =
-                    others.filter(|other| !std::ptr::eq(*other, *subject)).collect();
+                let devices = shown.iter().map(|(other, _)| *other);
+                let devices = devices.filter(|other| !std::ptr::eq(*other, *subject)).collect();
+                let others = Neighbours { devices, labels };
                 Sketch { drawing, view, subject }.draw_dimensions(&others);
             }
         }

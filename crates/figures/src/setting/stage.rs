@@ -97,10 +97,17 @@ impl Stage {
                 drawing.add("pupil", circle(0.3)).filled(BLUE);
             }
         }
+        let [camera, photograph] = self.labels(view);
+        write(drawing, "camera-label", camera, PAPER);
+        write(drawing, "photograph-label", photograph, PAPER);
+    }
+
+    /// What camera and photograph are called, where that is written.
+    pub fn labels(&self, view: &View) -> [Words; 2] {
+        let eye = view.place(self.eye);
         let name = |text: &str, at: DVec2| within(view, Words::new(text, at, TEXT));
         let back = self.forward.map_or(DVec2::ZERO, |f| 0.5 * EYE * DVec2::new(-f.x, f.y));
-        let words = name("camera", eye + back + DVec2::Y * (0.62 * EYE + 0.6 * TEXT));
-        write(drawing, "camera-label", words, PAPER);
+        let camera = name("camera", eye + back + DVec2::Y * (0.62 * EYE + 0.6 * TEXT));
         let corners = self.photograph().map(|p| view.place(p));
         let lowest = corners.iter().map(|p| p.y).fold(f64::MIN, f64::max);
         // Below the foot, which of one that leans is not below its middle.
@@ -110,8 +117,7 @@ impl Stage {
         });
         let middle = view.place(self.screen.middle.truncate()).x;
         let foot = middle.clamp(left, right);
-        let words = name("photograph", DVec2::new(foot, lowest + 0.9 * TEXT));
-        write(drawing, "photograph-label", words, PAPER);
+        [camera, name("photograph", DVec2::new(foot, lowest + 0.9 * TEXT))]
     }
 
     /// Draws how far camera, axes of devices and photograph are from each other along x, in a row

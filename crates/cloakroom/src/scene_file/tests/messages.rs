@@ -173,7 +173,7 @@ fn overrides_point_at_themselves() {
         (
             "",
             "camera.position=-80,0,0",
-            "position is \"-80,0,0\"; it must be three numbers in cm, in brackets: [-80, 0, 0]",
+            "position is \"-80,0,0\"; it must be three numbers (cm), in brackets: [-80, 0, 0]",
         ),
         (
             "",
