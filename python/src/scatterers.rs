@@ -7,7 +7,7 @@ use cloakroom::assembly::Placed;
 use cloakroom::outline_mesh::{Matter, outlines};
 use cloakroom::render::Supervision;
 use cloakroom::trace::{
-    Launch, Limits, Placement, RayStatus, ScatterRay, Scattered, scatter as scatter_rays,
+    Launch, Limits, Placement, RayStatus, ScatterRay, Scattered, scatter_batches,
 };
 use glam::{DMat3, DVec3};
 use ndarray::{Array2, ArrayView1, ArrayView2, ArrayView3, Axis};
@@ -140,63 +140,113 @@ impl<'py> Work<'_, 'py> {
     fn of<T: Real>(&self, rays: &Rays<'_, T>) -> Result<Bound<'py, PyDict>, Failure> {
         let Self { py, scene, limits, placement, want_fields } = self;
         let count = rays.origins.len_of(Axis(0));
-        let traced = |supervision: &Supervision<'_>| -> Result<_, Failure> {
+        let every = rays.draws.is_none();
+        let traced = |supervision: &Supervision<'_>| -> Result<Vec<Columns<T>>, Failure> {
             let (done, stop) = (supervision.rows_done, supervision.stop);
             let ray = |number: usize| rays.ray(number);
-            Ok(scatter_rays(scene.assembly()?, *limits, placement, count, &ray, done, stop)?)
+            let kept = |rows: Vec<Scattered>| Columns::of(&rows, every, *want_fields);
+            let assembly = scene.assembly()?;
+            Ok(scatter_batches(assembly, *limits, placement, count, &ray, &kept, done, stop)?)
         };
-        let scattered = if count <= FEW && scene.is_built() {
+        let batches = if count <= FEW && scene.is_built() {
             at_once(*py, traced)?
         } else {
             supervised(*py, None, |_, supervision| traced(supervision))?
         };
-        let every = rays.draws.is_none();
-        arrays::<T>(*py, &scattered, every, *want_fields)
+        arrays(*py, &batches, every, *want_fields)
+    }
+}
+
+/// The rows of a batch, by columns, of which there are fewer bytes.
+struct Columns<T> {
+    /// The numbers of the rays, unless each has one row.
+    ray: Vec<u32>,
+    status: Vec<u8>,
+    straight: Vec<bool>,
+    position: Vec<T>,
+    direction: Vec<T>,
+    weight: Vec<T>,
+    probability: Vec<T>,
+    transmitted: Vec<T>,
+    pruned: Vec<T>,
+    optical_path: Vec<T>,
+    path: Vec<u64>,
+    body: Vec<i32>,
+    /// The components of the fields, if they are wanted.
+    fields: Vec<Complex<f64>>,
+}
+
+impl<T: Real> Columns<T> {
+    fn of(rows: &[Scattered], every: bool, want_fields: bool) -> Self {
+        let real = |of: fn(&Scattered) -> f64| -> Vec<T> {
+            rows.iter().map(|row| T::of(of(row))).collect()
+        };
+        let vectors = |of: fn(&Scattered) -> DVec3| -> Vec<T> {
+            rows.iter().flat_map(|row| of(row).to_array().map(T::of)).collect()
+        };
+        let body = |row: &Scattered| match row.status {
+            RayStatus::Ended => i32::from(row.body),
+            _ => -1,
+        };
+        let numbered = if every { rows } else { &[] };
+        let with_fields = if want_fields { rows } else { &[] };
+        Self {
+            ray: numbered.iter().map(|row| row.ray).collect(),
+            status: rows.iter().map(|row| row.status as u8).collect(),
+            straight: rows.iter().map(|row| row.straight).collect(),
+            position: vectors(|row| row.position),
+            direction: vectors(|row| row.direction),
+            weight: real(|row| row.weight),
+            probability: real(|row| row.probability),
+            transmitted: real(|row| row.transmitted),
+            pruned: real(|row| row.pruned),
+            optical_path: real(|row| row.optical_path),
+            path: rows.iter().map(|row| row.path).collect(),
+            body: rows.iter().map(body).collect(),
+            fields: with_fields
+                .iter()
+                .flat_map(|row| row.electric.map(|field| field.components()))
+                .flatten()
+                .collect(),
+        }
     }
 }
 
 fn arrays<'py, T: Real>(
     py: Python<'py>,
-    scattered: &[Scattered],
+    batches: &[Columns<T>],
     every: bool,
     want_fields: bool,
 ) -> Result<Bound<'py, PyDict>, Failure> {
+    fn whole<T, C: Clone>(batches: &[Columns<T>], of: fn(&Columns<T>) -> &[C]) -> Vec<C> {
+        batches.iter().map(of).collect::<Vec<_>>().concat()
+    }
     let arrays = PyDict::new(py);
-    let real = |of: fn(&Scattered) -> f64| {
-        scattered.iter().map(|leaf| T::of(of(leaf))).collect::<Vec<T>>().into_pyarray(py)
+    let numbers = |name: &str, of: fn(&Columns<T>) -> &[T]| {
+        arrays.set_item(name, whole(batches, of).into_pyarray(py))
     };
-    let vectors = |of: fn(&Scattered) -> DVec3| -> Result<Bound<'py, PyArray2<T>>, Failure> {
-        let mut rows = Vec::with_capacity(3 * scattered.len());
-        scattered.iter().for_each(|leaf| rows.extend(of(leaf).to_array().map(T::of)));
-        Ok(Array2::from_shape_vec((scattered.len(), 3), rows)?.into_pyarray(py))
+    let vectors = |name: &str, of: fn(&Columns<T>) -> &[T]| -> Result<(), Failure> {
+        let flat = whole(batches, of);
+        let rows = Array2::from_shape_vec((flat.len() / 3, 3), flat)?;
+        Ok(arrays.set_item(name, rows.into_pyarray(py))?)
     };
     if every {
-        let rays: Vec<u32> = scattered.iter().map(|leaf| leaf.ray).collect();
-        arrays.set_item("ray", rays.into_pyarray(py))?;
+        arrays.set_item("ray", whole(batches, |rows| &rows.ray).into_pyarray(py))?;
     }
-    let status: Vec<u8> = scattered.iter().map(|leaf| leaf.status as u8).collect();
-    arrays.set_item("status", status.into_pyarray(py))?;
-    let straight: Vec<bool> = scattered.iter().map(|leaf| leaf.straight).collect();
-    arrays.set_item("straight", straight.into_pyarray(py))?;
-    arrays.set_item("position", vectors(|leaf| leaf.position)?)?;
-    arrays.set_item("direction", vectors(|leaf| leaf.direction)?)?;
-    arrays.set_item("weight", real(|leaf| leaf.weight))?;
-    arrays.set_item("probability", real(|leaf| leaf.probability))?;
-    arrays.set_item("transmitted", real(|leaf| leaf.transmitted))?;
-    arrays.set_item("pruned", real(|leaf| leaf.pruned))?;
-    arrays.set_item("optical_path", real(|leaf| leaf.optical_path))?;
-    let path: Vec<u64> = scattered.iter().map(|leaf| leaf.path).collect();
-    arrays.set_item("path", path.into_pyarray(py))?;
-    let body = |leaf: &Scattered| match leaf.status {
-        RayStatus::Ended => i32::from(leaf.body),
-        _ => -1,
-    };
-    let body: Vec<i32> = scattered.iter().map(body).collect();
-    arrays.set_item("body", body.into_pyarray(py))?;
+    arrays.set_item("status", whole(batches, |rows| &rows.status).into_pyarray(py))?;
+    arrays.set_item("straight", whole(batches, |rows| &rows.straight).into_pyarray(py))?;
+    vectors("position", |rows| &rows.position)?;
+    vectors("direction", |rows| &rows.direction)?;
+    numbers("weight", |rows| &rows.weight)?;
+    numbers("probability", |rows| &rows.probability)?;
+    numbers("transmitted", |rows| &rows.transmitted)?;
+    numbers("pruned", |rows| &rows.pruned)?;
+    numbers("optical_path", |rows| &rows.optical_path)?;
+    arrays.set_item("path", whole(batches, |rows| &rows.path).into_pyarray(py))?;
+    arrays.set_item("body", whole(batches, |rows| &rows.body).into_pyarray(py))?;
     if want_fields {
-        let fields = scattered.iter().flat_map(|leaf| leaf.electric.map(|e| e.components()));
-        let fields: Vec<Complex<f64>> = fields.flatten().collect();
-        let fields = ndarray::Array3::from_shape_vec((scattered.len(), 2, 3), fields)?;
+        let fields = whole(batches, |rows| &rows.fields);
+        let fields = ndarray::Array3::from_shape_vec((fields.len() / 6, 2, 3), fields)?;
         arrays.set_item("electric_field", fields.into_pyarray(py))?;
     }
     Ok(arrays)

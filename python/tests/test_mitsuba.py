@@ -19,6 +19,9 @@ from conftest import REPOSITORY
 
 mi = pytest.importorskip("mitsuba", reason="mitsuba is not installed: pip install './python[mitsuba]'")
 try:
+    import drjit as dr
+
+    import cloakroom
     import cloakroom.mitsuba as rooms
 except ImportError as error:
     pytest.skip(str(error), allow_module_level=True)
@@ -64,7 +67,7 @@ def empty() -> Image:
     return picture(box(), 64)
 
 
-@pytest.mark.parametrize("variant_name", ["llvm_ad_rgb", "llvm_ad_spectral"])
+@pytest.mark.parametrize("variant_name", ["llvm_ad_rgb", "llvm_ad_spectral", "llvm_ad_spectral_polarized"])
 def test_without_devices_it_is_mitsubas_path(variant_name: str) -> None:
     mi.set_variant(variant_name)
     one, other = (picture(box(name)) for name in ("path", "cloakroom_path"))
@@ -228,10 +231,151 @@ def test_mistakes_are_told() -> None:
         mi.load_dict({"type": "cloakroom", "kind": "sphere-clock"})
 
 
-def test_polarized_variants_are_refused() -> None:
-    mi.set_variant("llvm_ad_spectral_polarized")
-    with pytest.raises(RuntimeError, match="does not go with polarized variants"):
-        mi.load_dict({"type": "cloakroom_path"})
+POLARIZED = ["llvm_ad_mono_polarized", "llvm_ad_spectral_polarized"]
+
+
+def plain(value: float) -> Any:
+    """A number that is one at all wavelengths."""
+    return {"type": "uniform", "value": value} if mi.is_spectral else value
+
+
+def stokes(room: dict[str, Any], samples: int, seed: int = 1) -> Image:
+    """S0 to S3 of the light that comes to the camera, by Mitsuba's own integrator for it; (height, width, 4)."""
+    nested = {"type": "cloakroom_path", "max_depth": 6}
+    room = {**room, "integrator": {"type": "stokes", "nested": nested}}
+    image = np.array(mi.render(mi.load_dict(room), seed=seed, spp=samples))
+    # The picture and four of its kind, of which the light's first color does.
+    return image[..., -12::3]
+
+
+def camera(origin: list[float], fov: float, width: int, height: int) -> dict[str, Any]:
+    return {
+        "type": "perspective",
+        "fov": fov,
+        "to_world": mi.ScalarTransform4f().look_at(origin, [0, 0, 0], [0, 1, 0]),
+        "film": {
+            "type": "hdrfilm",
+            "width": width,
+            "height": height,
+            "rfilter": {"type": "box"},
+            "pixel_format": "rgb" if mi.is_spectral else "luminance",
+        },
+    }
+
+
+@pytest.mark.parametrize("variant_name", POLARIZED)
+def test_polarized_light_is_reflected_as_by_mitsubas_own_metal(variant_name: str) -> None:
+    """Light through a polarizer, made elliptical by metal: the fields' phases tell right-handed from left-handed light."""
+    mi.set_variant(variant_name)
+    extinction = 2.0
+    turn = mi.ScalarTransform4f().rotate([0.36, 0.48, 0.8], 17)
+    # Without absorption, so that each draw of the device is the reflected ray.
+    metal = {"kind": "body", "shape": "box", "size": [40, 4, 40], "position": [0, -2, 0], "permittivity": [-(extinction**2), 0]}
+    conductor = {"type": "conductor", "eta": plain(0.0), "k": plain(extinction)}
+    plate = turn @ mi.ScalarTransform4f().rotate([1, 0, 0], -90).scale(20)
+    lamp = mi.ScalarTransform4f().look_at([60, 40, 10], [0, 0, 0], [0, 1, 0]).scale(60)
+    sheet = mi.ScalarTransform4f().look_at([45, 30, 8], [0, 0, 0], [0, 1, 0]).scale(60)
+    room = {
+        "type": "scene",
+        "lamp": {"type": "rectangle", "to_world": lamp, "emitter": {"type": "area", "radiance": plain(1.0)}},
+        "sheet": {"type": "rectangle", "to_world": sheet, "bsdf": {"type": "polarizer", "theta": plain(30.0)}},
+        "sensor": camera([-60, 45, 0], 20, 16, 16),
+    }
+    one = stokes({**room, "metal": rooms.device(metal, turn)}, 16)
+    other = stokes({**room, "metal": {"type": "rectangle", "to_world": plate, "bsdf": conductor}}, 16)
+    # The same rays, but for those at the edge.
+    lit = (one[..., 0] > 0.01) & (other[..., 0] > 0.01)
+    assert lit.mean() > 0.5
+    share, expected = one[lit][:, 1:] / one[lit][:, :1], other[lit][:, 1:] / other[lit][:, :1]
+    off = np.abs(share - expected).max(axis=-1)
+    assert (off < 1e-3).mean() > 0.97, np.sort(off)[-20:]
+    # There is something of each to get wrong, and no light is left unpolarized.
+    assert (np.abs(expected).max(axis=0) > 0.05).all()
+    np.testing.assert_allclose(np.linalg.norm(share, axis=-1), 1, atol=2e-2)
+
+
+@pytest.mark.parametrize("variant_name", POLARIZED)
+@pytest.mark.parametrize(
+    "device",
+    [
+        # Total reflection in it makes light circular.
+        {"kind": "square-cloak", "material": "positive-uniaxial", "rotation": 12, "length": 60},
+        {"kind": "body", "shape": "box", "size": [22, 16, 30], "index": 1.7, "axis": [0.5, 0.4, 1], "rotation": 25},
+    ],
+    ids=["i", "glass"],
+)
+def test_stokes_images_are_those_of_our_own_pictures(device: dict[str, Any], variant_name: str, tmp_path: Path) -> None:
+    """A photograph behind a device, by Mitsuba with leaves that are drawn, and by cloakroom with all of them."""
+    mi.set_variant(variant_name)
+    width, height = 24, 18
+    y, x = np.mgrid[0 : 4 * height, 0 : 4 * width]
+    photograph = (0.6 + 0.3 * np.sin(x / 31 + 0.4) + 0.25 * np.cos(y / 23) * x / 90).astype(np.float32)
+    mi.Bitmap(np.repeat(photograph[..., None], 3, axis=2)).write(str(tmp_path / "photograph.exr"))
+    scene = cloakroom.Scene(
+        camera={"resolution": [width, height], "samples": 16},
+        photograph={"image": str(tmp_path / "photograph.exr"), "width": 110},
+        picture={"channels": ["stokes"]},
+        devices=[device],
+    )
+    own = scene.render()
+    s0, s1, s2, s3 = (own[f"stokes.S{number}"][..., 0].astype(np.float64) for number in range(4))
+    # Mitsuba's horizontal is across the camera's up, ours such that vertical is across its right.
+    half = np.tan(np.radians(20))
+    right = (np.arange(width) + 0.5) / width * 2 - 1
+    up = (1 - (np.arange(height) + 0.5) / height * 2) * height / width
+    rays = np.stack(np.broadcast_arrays(1.0, half * up[:, None], half * right), axis=-1)
+    rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+    vertical, horizontal = np.cross([0.0, 0, 1], rays), np.cross(rays, [0.0, 1, 0])
+    vertical, horizontal = (each / np.linalg.norm(each, axis=-1, keepdims=True) for each in (vertical, horizontal))
+    angle = 2 * np.arctan2((horizontal * vertical).sum(axis=-1), (horizontal * np.cross(rays, vertical)).sum(axis=-1))
+    c, s = np.cos(angle), np.sin(angle)
+    expected = np.stack([s0, s1 * c + s2 * s, s2 * c - s1 * s, s3], axis=-1)
+    lamp = {"type": "bitmap", "bitmap": mi.Bitmap(photograph[::-1, :, None].copy()), "raw": True, "wrap_mode": "clamp"}
+    place = mi.ScalarTransform4f().translate([50, 0, 0]).rotate([0, 1, 0], -90).scale([55, 55 * height / width, 1])
+    room = {
+        "type": "scene",
+        "photograph": {"type": "rectangle", "to_world": place, "emitter": {"type": "area", "radiance": lamp}},
+        "device": rooms.device(device, min_power=1e-4),
+        "sensor": camera([-100, 0, 0], 40, width, height),
+    }
+    # In spectral variants the first color of even light is not its brightness.
+    white = {"type": "scene", "sky": {"type": "constant", "radiance": plain(1.0)}, "sensor": room["sensor"]}
+    scale = stokes(white, 64)[..., 0].mean()
+    images = np.array([stokes(room, 64, seed) / scale for seed in range(4)], dtype=np.float64)
+    found, spread = images.mean(axis=0), images.std(axis=0, ddof=1) / 2
+    error = np.sqrt((spread**2).sum(axis=(0, 1))) / (width * height)
+    largest = np.abs(expected).max(axis=(0, 1))
+    for number in range(4):
+        # Of the sampling of edges there, and of branches that were pruned, something is left.
+        off = (found - expected)[..., number].mean()
+        assert abs(off) < 4 * error[number] + 5e-4, f"S{number}: {off} +- {error[number]}"
+        likeness = np.corrcoef(found[..., number].ravel(), expected[..., number].ravel())[0, 1]
+        assert likeness > 0.93 and largest[number] > 0.03, f"S{number}: {likeness}, {largest}"
+
+
+@pytest.mark.parametrize("variant_name", POLARIZED)
+def test_polarized_light_passes_cloaks_as_if_they_were_not_there(variant_name: str) -> None:
+    """Of shadow rays, too: Stokes images among polarizing things, and the variant's `path` without devices."""
+    mi.set_variant(variant_name)
+
+    def seen(**more: Any) -> Image:
+        room = box(pixels=24, **more)
+        # Of all integrators, that of the box does not go with these.
+        room["sensor"]["film"]["pixel_format"] = "rgb" if mi.is_spectral else "luminance"
+        place = mi.ScalarTransform4f().translate([-0.3, -0.1, 0.45]).rotate([0, 1, 0], 25).scale(0.35)
+        room["sheet"] = {"type": "rectangle", "to_world": place, "bsdf": {"type": "polarizer", "theta": plain(20.0)}}
+        room["small-box"]["bsdf"] = {"type": "conductor", "eta": plain(0.3), "k": plain(3.0)}
+        return stokes(room, 16)
+
+    def placed(device: dict[str, Any]) -> dict[str, Any]:
+        return rooms.device(device, mi.ScalarTransform4f().translate([0.4, 0.6, 0.1]), unit=32)
+
+    cloak, nothing, empty = seen(cloak=placed(SPHERE_CLOAK)), seen(cloak=placed(NOTHING)), seen()
+    assert (np.abs(cloak - nothing).max(axis=-1) < 1e-4).mean() >= 0.995
+    assert (np.abs(cloak - empty).max(axis=-1) < 1e-4).mean() >= 0.9
+    off = (cloak - empty)[..., 0].astype(np.float64)
+    assert abs(off.mean()) < 3 * off.std() / np.sqrt(off.size) + 1e-6
+    assert np.abs(empty[..., 1:]).max() > 0.02
 
 
 def command(*words: object) -> subprocess.CompletedProcess[str]:
@@ -306,6 +450,64 @@ def test_colors_take_their_own_ways_in_spectral_variants() -> None:
         one, many = (picture(with_device(device, wavelengths=bins), 64) for bins in (1, 4))
         spread = np.std((one - many).reshape(-1, 3), axis=0) / np.sqrt(one[..., 0].size)
         assert (np.abs(one.mean(axis=(0, 1)) - many.mean(axis=(0, 1))) < 4 * spread + 1e-4).all()
+
+
+def test_a_prism_parts_colors_as_the_tracer_does() -> None:
+    """Where light of each bin of wavelengths lands behind a prism of flint, against all leaves at the middle of the bin."""
+    mi.set_variant("llvm_ad_spectral")
+    prism = {"kind": "prisms", "length": 20, "prism": [{"corners": [[-1.5, -3], [1.5, -3], [0, 6]], "material": "sf11"}]}
+    bins, count, reach, behind = 8, 20_000, 40.0, 40.0
+    origin, direction = np.array([-30.0, 5, 0]), np.array([1, -0.2, 0]) / np.hypot(1, 0.2)
+    # A lamp whose radiance grows along y.
+    ramp = np.linspace(0, 1, 512, dtype=np.float32)[:, None, None]
+    texture = {"type": "bitmap", "bitmap": mi.Bitmap(ramp.repeat(2, axis=1)), "raw": True, "wrap_mode": "clamp"}
+    place = mi.ScalarTransform4f().translate([behind, 0, 0]).rotate([0, 1, 0], -90).scale([reach, reach, 1])
+    room = mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": "cloakroom_path", "max_depth": 2},
+            "lamp": {"type": "rectangle", "to_world": place, "emitter": {"type": "area", "radiance": texture}},
+            "prism": rooms.device(prism, wavelengths=bins, min_power=1e-5),
+        }
+    )
+
+    def lit(y: NDArray[np.float64]) -> NDArray[np.float64]:
+        # Texels are linear from middle to middle.
+        up = (1 - y / reach if flipped else 1 + y / reach) / 2
+        return np.clip((up * 512 - 0.5) / 511, 0, 1)
+
+    probe = mi.Ray3f(mi.Point3f(-30, 30, 30), mi.Vector3f(1, 0, 0))
+    probe.wavelengths = mi.UnpolarizedSpectrum(550)
+    sampler = mi.load_dict({"type": "independent"})
+    sampler.seed(0, 1)
+    flipped = float(np.array(room.integrator().sample(room, sampler, probe)[0])[0, 0]) < 0.5
+    landed = []
+    for number in (0, 3, 7):
+        middle = 400 + 300 * (number + 0.5) / bins
+        sampler.seed(number, count)
+        ray = mi.Ray3f(dr.zeros(mi.Point3f, count) + mi.Point3f(*origin.tolist()), mi.Vector3f(*direction.tolist()))
+        # Anywhere in the bin.
+        first = middle + 37.4 * (mi.Float(np.random.default_rng(number).random(count)) - 0.5)
+        ray.wavelengths = mi.UnpolarizedSpectrum(first, 420, 560, 680)
+        light = np.array(room.integrator().sample(room, sampler, ray)[0], dtype=np.float64).reshape(4, count)
+        # The first wavelength has stood for all four.
+        assert (light[1:] == 0).all()
+        leaves = cloakroom.Scatterer(
+            cloakroom.Scene(devices=prism, light={"wavelength_nm": middle}), min_power=1e-5
+        ).scatter(origin, direction)
+        ways = (behind - leaves.position[:, 0]) / leaves.direction[:, 0]
+        at = leaves.position[:, 1] + ways * leaves.direction[:, 1]
+        across = np.abs(leaves.position[:, 2] + ways * leaves.direction[:, 2])
+        meets = (ways > 0) & (np.abs(at) < reach) & (across < reach)
+        expected = 4 * (leaves.weight * np.where(meets, lit(at), 0)).sum() / leaves.weight.sum()
+        error = light[0].std() / np.sqrt(count)
+        assert abs(light[0].mean() - expected) < 4 * error + 1e-4, f"{middle} nm: {light[0].mean()} {expected} +- {error}"
+        landed.append(float(at[np.argmax(leaves.weight * meets)]))
+        # The strongest leaf of them all is found where it lands, to what single precision leaves.
+        strongest = 4 * lit(np.array(landed[-1]))
+        assert (np.abs(light[0] - strongest) < 2e-3).mean() > 0.6
+    # Blue is bent most, by more than is said above.
+    assert landed[0] < landed[1] - 0.2 < landed[2] - 0.3, landed
 
 
 def test_noise_is_taken_away_by_open_image_denoise() -> None:

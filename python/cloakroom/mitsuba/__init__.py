@@ -15,9 +15,10 @@ Importing it registers two plugins in every variant that computes wavefronts (``
 >>> image.shape
 (256, 256, 3)
 
-What cannot be: variants without wavefronts (``scalar_...``), since devices are traced many rays at a time; polarized
-variants; geometry within the bounding shape of a device; light tracing
-(``ptracer``), photons and derivatives through a device; participating media.
+What cannot be: variants without wavefronts (``scalar_...``), since devices are traced many rays at a time; geometry
+within the bounding shape of a device; light tracing (``ptracer``), photons and derivatives through a device; participating
+media. In polarized variants devices act on Stokes vectors; ``{"type": "stokes", "nested": {"type": "cloakroom_path"}}`` gives
+their images.
 """
 
 from ._llvm import choose

@@ -19,8 +19,8 @@ __all__ = ["register"]
 #: Shadow rays through devices that each path may have waiting; where there are more, the path waits for them.
 SLOTS = 4
 
-#: Paths at a time, unless the picture alone has more.
-PATHS = 1 << 20
+#: Paths at a time, unless the picture alone has more; in polarized variants each carries Mueller matrices.
+PATHS, PATHS_POLARIZED = 1 << 20, 1 << 17
 
 #: A device lets shadow rays through by itself that takes at least so much of the light on along its line.
 CLEAR = 0.9
@@ -191,29 +191,99 @@ def _place(shape: Any) -> int:
 
 def _scatter(scatterers: list[Scatterer], o: Any, d: Any, u: Any, wavelengths: Any) -> dict[str, NDArray[Any]]:
     """What becomes of rays at a device, of each by the bin of its first wavelength."""
-    names = ("status", "straight", "position", "direction", "weight", "transmitted")
+    names = ["status", "straight", "position", "direction", "weight", "transmitted"]
     starts, ways, draws = _rows(o), _rows(d), np.array(u)
+    fields: Any = False
+    if mi.is_polarized:
+        names.append("electric_field")
+        fields = np.stack([_rows(axis) for axis in _frame(d)], axis=1)
     if len(scatterers) == 1:
         (scatterer,) = scatterers
-        scattered = scatterer.scatter(starts, ways, draws)
+        scattered = scatterer.scatter(starts, ways, draws, fields=fields)
         return {name: getattr(scattered, name) for name in names}
     share = (np.array(wavelengths) - SHORTEST_NM) / (LONGEST_NM - SHORTEST_NM)
     bins = np.clip((share * len(scatterers)).astype(int), 0, len(scatterers) - 1)
     found: dict[str, NDArray[Any]] = {}
     for number in np.unique(bins):
         own = bins == number
-        scattered = scatterers[number].scatter(starts[own], ways[own], draws[own])
+        fields_there = fields[own] if mi.is_polarized else False
+        scattered = scatterers[number].scatter(starts[own], ways[own], draws[own], fields=fields_there)
         for name in names:
             part = getattr(scattered, name)
             found.setdefault(name, np.empty((len(draws), *part.shape[1:]), part.dtype))[own] = part
     return found
 
 
+def _frame(d: Any) -> tuple[Any, Any]:
+    """The axes that Mitsuba's Stokes vectors have of light that comes along camera rays, so against their direction."""
+    x = mi.mueller.stokes_basis(-d)
+    return x, dr.cross(x, d)
+
+
+def _mueller(scattered: dict[str, NDArray[Any]], d: Any) -> Any:
+    """The Mueller matrices of leaves that were drawn for rays along ``d``, for light that comes against them.
+
+    They are scaled to the weights of the leaves. All media are reciprocal, so that the Jones matrix of light is that of the
+    ray from the camera transposed (the book's chapter about polarization).
+    """
+    columns = [
+        [_columns(mi.Vector3f, part(scattered["electric_field"][:, column]).astype(np.float32)) for part in (np.real, np.imag)]
+        for column in range(2)
+    ]
+    axes = _frame(_columns(mi.Vector3f, scattered["direction"]))
+
+    def jones(of: int, to: int) -> Any:
+        re, im = columns[to]
+        return mi.Complex2f(dr.dot(axes[of], re), dr.dot(axes[of], im))
+
+    # E of what arrives is ((a, b), (c, d)) E of what set out.
+    xx, xy, yx, yy = jones(0, 0), jones(1, 0), jones(0, 1), jones(1, 1)
+    a, b, c, e = (dr.squared_norm(each) for each in (xx, xy, yx, yy))
+
+    def mutual(one: Any, other: Any) -> Any:
+        return dr.conj(one) * other
+
+    before, after = (mutual(xx, xy), mutual(yx, yy)), (mutual(xx, yx), mutual(xy, yy))
+    one, other = mutual(xx, yy), mutual(xy, yx)
+    power = 0.5 * (a + b + c + e)
+    # In fields that go as exp(-i w t) light of E = (1, i) turns counterclockwise as it is seen to come, left-handed; Mitsuba
+    # counts right-handed light as S3 > 0.
+    rows = [
+        [power, 0.5 * (a - b + c - e), (before[0] + before[1]).real, (before[0] + before[1]).imag],
+        [0.5 * (a + b - c - e), 0.5 * (a - b - c + e), (before[0] - before[1]).real, (before[0] - before[1]).imag],
+        [(after[0] + after[1]).real, (after[0] - after[1]).real, (one + other).real, (one - other).imag],
+        [-(after[0] + after[1]).imag, -(after[0] - after[1]).imag, -(one + other).imag, (one - other).real],
+    ]
+    scale = mi.Float(scattered["weight"]) / power
+    return mi.Spectrum(mi.Matrix4f(rows)) * dr.select(power > 0, scale, 0)
+
+
 def _first_only(light: Any, alone: Any) -> Any:
     """Light of which only the first wavelength goes on, for all others; ``alone`` says where that has been done."""
     first = mi.Spectrum(0)
-    first[0] = light[0] * dr.select(alone, 1, len(light))
+    if mi.is_polarized:
+        for row, column in itertools.product(range(4), range(4)):
+            entry = mi.UnpolarizedSpectrum(0)
+            entry[0] = light[row, column][0] * dr.select(alone, 1, len(entry))
+            first[row, column] = entry
+    else:
+        first[0] = light[0] * dr.select(alone, 1, len(light))
     return first
+
+
+def _weight(scattered: dict[str, NDArray[Any]], d: Any) -> Any:
+    """What light that comes against rays along ``d`` is to be multiplied with for the leaf that was drawn."""
+    return _mueller(scattered, d) if mi.is_polarized else mi.Float(scattered["weight"])
+
+
+def _of_lamp(light: Any) -> Any:
+    """What comes of a lamp's unpolarized light, by the Mueller matrix of its way."""
+    return light * mi.mueller.depolarizer(mi.UnpolarizedSpectrum(1)) if mi.is_polarized else light
+
+
+def _added(light: Any, onto: Any, sum: Any) -> Any:
+    """A product added to a sum, of Mueller matrices where light is polarized."""
+    return light * onto + sum if mi.is_polarized else dr.fma(light, onto, sum)
 
 
 def _is_clear(bsdf: Any) -> bool:
@@ -274,12 +344,6 @@ def _integrator() -> Callable[[Any], Any]:
 
         def __init__(self, props: Any) -> None:
             super().__init__(props)
-            if mi.is_polarized:
-                raise ValueError(
-                    "the integrator cloakroom_path does not go with polarized variants: it takes unpolarized light through "
-                    "devices; set one without, such as llvm_ad_rgb or llvm_ad_spectral. `cloakroom render` has pictures through "
-                    "polarizers and of Stokes parameters"
-                )
             max_depth = int(props.get("max_depth", -1))
             if max_depth < -1:
                 raise ValueError(f"max_depth is {max_depth}; expected -1, which is endless, or more")
@@ -323,7 +387,8 @@ def _integrator() -> Callable[[Any], Any]:
                 size = size + 2 * film.rfilter().border_size()
             pixels = int(dr.prod(size))
             spp = spp or sensor.sampler().sample_count()
-            fits = [each for each in range(1, spp + 1) if spp % each == 0 and each * pixels <= PATHS]
+            most = PATHS_POLARIZED if mi.is_polarized else PATHS
+            fits = [each for each in range(1, spp + 1) if spp % each == 0 and each * pixels <= most]
             at_once = max(fits, default=1)
             passes = spp // at_once
             block = None
@@ -356,6 +421,7 @@ def _integrator() -> Callable[[Any], Any]:
                 Common._splat_to_block(block, film, pos, light, mi.Float(1), alpha, [], wavelengths)
                 return
             # The samples of a pixel are added up in their order, so that the sum is the same bytes each time.
+            light = mi.unpolarized_spectrum(light)
             if mi.is_spectral:
                 color = mi.spectrum_to_srgb(light, wavelengths)
             elif mi.is_monochromatic:
@@ -507,7 +573,7 @@ def _integrator() -> Callable[[Any], Any]:
             em_pdf = scene.pdf_emitter_direction(before, ds, shines & ~now["delta"])
             mis = dr.select(now["straight"], _mis(now["pdf"], dr.select(now["delta"], 0, em_pdf)), 1)
             emitted = ds.emitter.eval(si, shines & (now["pdf"] > 0))
-            now["result"] = dr.select(shines, dr.fma(now["throughput"], emitted * mis, now["result"]), now["result"])
+            now["result"] = dr.select(shines, _added(now["throughput"], emitted * mis, now["result"]), now["result"])
             # Further on?
             further = normal & (now["depth"] + 1 < self.max_depth) & si.is_valid()
             bsdf = si.bsdf()
@@ -517,13 +583,23 @@ def _integrator() -> Callable[[Any], Any]:
             wo = si.to_local(ds.d)
             one, two = sampler.next_1d(normal), sampler.next_2d(normal)
             value, pdf, bs, weight = bsdf.eval_pdf_sample(mi.BSDFContext(), si, wo, one, two, further)
+            # From the way that light goes, as Mueller matrices have it.
+            value = si.to_world_mueller(value, -wo, si.wi)
+            weight = si.to_world_mueller(weight, -bs.wo, si.wi)
             shadow = si.spawn_ray_to(ds.p)
             lit = samples & dr.any(value != 0) if not mi.is_polarized else samples
             found = scene.ray_intersect_preliminary(shadow, False, lit)
             blocked = found.is_valid()
             mis = dr.select(ds.delta, 1, _mis(ds.pdf, pdf))
-            light = now["throughput"] * value * em_weight * mis
-            now["result"] = dr.select(lit & ~blocked, now["result"] + light, now["result"])
+            if mi.is_polarized:
+                # Lamps are unpolarized. What a device does to their light comes before what is done here.
+                lamp = mi.Spectrum(0)
+                for axis in range(4):
+                    lamp[axis, axis] = em_weight[0, 0]
+                light = now["throughput"] * value * lamp * mis
+            else:
+                light = now["throughput"] * value * em_weight * mis
+            now["result"] = dr.select(lit & ~blocked, now["result"] + _of_lamp(light), now["result"])
             if shadows is not None:
                 screen = room.number(found.shape, lit & blocked)
                 queued = lit & blocked & dr.gather(mi.Bool, room.clear_table, screen, lit & blocked)
@@ -557,7 +633,7 @@ def _integrator() -> Callable[[Any], Any]:
             now["left"] = dr.select(scattered, 0, now["left"])
             # Russian roulette.
             now["depth"] = dr.select(scattered, now["depth"] + 1, now["depth"])
-            most = dr.max(now["throughput"])
+            most = dr.max(mi.unpolarized_spectrum(now["throughput"]))
             keep = dr.minimum(most * dr.square(now["eta"]), 0.95)
             roulette = normal & (now["depth"] >= self.rr_depth)
             lucky = sampler.next_1d(normal) < keep
@@ -599,7 +675,7 @@ def _integrator() -> Callable[[Any], Any]:
                     dr.scatter(state["alone"], alone | met, rows)
                 dr.scatter(state["o"], _columns(mi.Point3f, scattered["position"]), rows)
                 dr.scatter(state["d"], _columns(mi.Vector3f, scattered["direction"]), rows)
-                dr.scatter(state["throughput"], throughput * mi.Float(scattered["weight"]), rows)
+                dr.scatter(state["throughput"], throughput * _weight(scattered, d), rows)
                 dr.scatter(state["straight"], straight & on_line, rows)
                 dr.scatter(state["left"], mi.UInt32(number) + dr.zeros(mi.UInt32, count), rows)
                 dr.scatter(state["maxt"], dr.full(mi.Float, dr.largest(mi.Float), count), rows)
@@ -639,10 +715,11 @@ def _integrator() -> Callable[[Any], Any]:
                         light_there = _first_only(light_there, alone)
                         dr.scatter(ways["alone"], mi.Bool(True) | alone, of_device)
                     # What of the ray goes on along its line is the mean of what leaves that are drawn say.
-                    share = _scatter(scatterers, o, d, u, of_first)["transmitted"]
-                    dr.scatter(ways["light"], light_there * mi.Float(share), of_device)
+                    scattered = _scatter(scatterers, o, d, u, of_first)
+                    scattered["weight"] = scattered["transmitted"]
+                    dr.scatter(ways["light"], light_there * _weight(scattered, d), of_device)
                 arrived = self._on_to_light(scene, room, ways)
-                dr.scatter(light, ways["light"], rows, arrived)
+                dr.scatter(light, _of_lamp(ways["light"]), rows, arrived)
                 left = dr.compress(ways["device"] != 0)
                 if dr.width(left) == 0:
                     break
@@ -658,7 +735,7 @@ def _integrator() -> Callable[[Any], Any]:
         def _on_to_light(scene: Any, room: _Room, ways: dict[str, Any]) -> Any:
             """Takes shadow rays that have been traced through a device on to their lamps or the next device."""
             dr.make_opaque(ways)
-            active = dr.any(ways["light"] != 0)
+            active = dr.any(mi.unpolarized_spectrum(ways["light"]) != 0)
             wavelengths = dr.zeros(type(mi.Ray3f().wavelengths))
 
             def goes_on(o: Any, maxt: Any, left: Any, next_one: Any, lit: Any, active: Any) -> Any:

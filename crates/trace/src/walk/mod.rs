@@ -29,5 +29,5 @@ pub use leaf::{Leaf, LeafEnd, Outcome, TraceStats};
 pub use leaf_table::{LeafTable, RaySettings, Stopped};
 pub use paths::{Line, PathGatherer, PathTable, TreePath, lines};
 pub use recorder::{PathRecorder, PathSegment, PathTime};
-pub use scatter::{Placement, RayStatus, ScatterRay, Scattered, scatter};
+pub use scatter::{Placement, RayStatus, ScatterRay, Scattered, scatter, scatter_batches};
 pub use tracer::{Launch, Limits, Tracer};

@@ -136,9 +136,36 @@ pub fn scatter(
     done: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
 ) -> Result<Vec<Scattered>, Stopped> {
+    let whole = |rows: Vec<Scattered>| rows;
+    let mut batches =
+        scatter_batches(assembly, limits, placement, count, ray, &whole, done, stop)?.into_iter();
+    let mut all = batches.next().unwrap_or_default();
+    for mut batch in batches {
+        all.append(&mut batch);
+    }
+    Ok(all)
+}
+
+/// The same for callers that keep less of each row, or keep it otherwise: `kept` makes of the rows of each
+/// batch of rays, on the thread that has traced it, what of it is given, in order of the rays.
+///
+/// # Errors
+///
+/// If the work was stopped.
+#[expect(clippy::too_many_arguments, reason = "those of `scatter` and one more")]
+pub fn scatter_batches<R: Send>(
+    assembly: &Assembly,
+    limits: Limits,
+    placement: &Placement,
+    count: usize,
+    ray: &(impl Fn(usize) -> ScatterRay + Sync),
+    kept: &(impl Fn(Vec<Scattered>) -> R + Sync),
+    done: &(dyn Fn(u64) + Sync),
+    stop: &AtomicBool,
+) -> Result<Vec<R>, Stopped> {
     let size = batch_size(count);
     let four = assembly.is_graded();
-    let mut batches = crate::parallel::map(count.div_ceil(size), |batch| {
+    crate::parallel::map(count.div_ceil(size), |batch| {
         if stop.load(Ordering::Relaxed) {
             return Err(Stopped);
         }
@@ -147,14 +174,10 @@ pub fn scatter(
         let batch = Batch { assembly, limits, placement, rays: &rays };
         let scattered = if four { batch.by_fours(ray) } else { batch.one_by_one(ray) };
         done(length);
-        Ok(scattered)
+        Ok(kept(scattered))
     })
-    .into_iter();
-    let mut all = batches.next().unwrap_or(Ok(Vec::new()))?;
-    for batch in batches {
-        all.append(&mut batch?);
-    }
-    Ok(all)
+    .into_iter()
+    .collect()
 }
 
 struct Batch<'a> {
@@ -265,6 +288,10 @@ impl Batch<'_> {
                 electric: leaf.electric,
             })
         };
+        if let [leaf] = leaves {
+            scattered.push(of_leaf(leaf));
+            return;
+        }
         let mut order: Vec<&Leaf<2>> = leaves.iter().collect();
         order.sort_by(|a, b| b.total_power().total_cmp(&a.total_power()));
         scattered.extend(order.into_iter().map(of_leaf));
