@@ -42,7 +42,8 @@ impl Drawing {
 #[pyfunction]
 pub fn setting(py: Python<'_>, scene: &Scene) -> Result<Drawing, Failure> {
     let drawn = supervised(py, None, |_, _| {
-        figures::setting(scene.scene()).map_err(|error| scene.located(&error))
+        figures::setting(scene.scene(), scene.scene().camera.resolution)
+            .map_err(|error| scene.located(&error))
     })?;
     let pixels = scene.scene().camera.resolution;
     Ok(Drawing { drawing: drawn.drawing, title: "Setting", metadata: drawn.metadata, pixels })

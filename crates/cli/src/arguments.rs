@@ -107,7 +107,7 @@ pub enum Command {
     },
     /// List the materials that come with the program, or the indices of one: n, k and the group
     /// index.
-    #[command(after_help = example!("materials BK7 --at 400..700:50"))]
+    #[command(after_help = example!("materials bk7 --at 400..700:50"))]
     Materials(MaterialsArguments),
     /// List the example scenes, or copy them.
     #[command(after_help = example!("scenes --out scenes"))]

@@ -8,7 +8,7 @@ use cloakroom::assembly::Placed;
 use cloakroom::render::{
     Estimate, Images, Origins, PreparedScene, behind_photograph, estimate, origins, pixels_across,
 };
-use cloakroom::scene::{Border, DeviceSettings, Projection, Scene, Show};
+use cloakroom::scene::{Border, DeviceSettings, Projection, Scene, Show, SurroundingsSettings};
 use cloakroom::threads;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -115,6 +115,9 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
     }
     for number in 0..scene.devices.len() {
         let name = scene.device_name(number);
+        if scene.devices[number].placement.show == Show::Empty {
+            continue;
+        }
         match pixels_across(prepared, number) {
             None => writeln!(
                 text,
@@ -141,12 +144,12 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
     if photograph == 0.0 {
         writeln!(
             text,
-            "warning      no light comes from the photograph, which is at {}; photograph.x or \
-             photograph.position moves it, camera.target turns the camera",
+            "warning      of the rays that were tried none comes from the photograph, which is at {}: it is hidden, out \
+             of view or small; photograph.x or photograph.position moves it, camera.target turns the camera",
             scene.photograph.place()
         )?;
     }
-    if past > 0.0 {
+    if past > 0.0 && scene.surroundings == SurroundingsSettings::default() {
         writeln!(
             text,
             "hint         {} of the light comes from past the photograph's edge, where nothing is; \

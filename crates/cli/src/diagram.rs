@@ -8,7 +8,6 @@ use crate::progress::supervised;
 use crate::report::{Failure, Result, all, say};
 use crate::scene;
 use cloakroom::render::{Delay, Gate, metadata};
-use cloakroom::scene::{Camera, CameraSettings};
 use cloakroom::scene_file::Loaded;
 use cloakroom_figures::film::{FilmFormat, FrameFolder, pulse_frames};
 use cloakroom_figures::{
@@ -41,12 +40,7 @@ fn draw(arguments: &DiagramArguments, pulse: Option<Pulse>) -> Result<()> {
     check_outputs(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
     let _busy = interruption::busy();
     let (drawing, title): (Drawing, _) = if arguments.setting {
-        let mut scene = loaded.scene.clone();
-        let mut settings = CameraSettings::clone(&scene.camera);
-        // The sheet has the aspect of the picture.
-        settings.resolution = arguments.size;
-        scene.camera = Camera::new(settings)?;
-        let setting = cloakroom_figures::setting(&scene);
+        let setting = cloakroom_figures::setting(&loaded.scene, arguments.size);
         (setting.map_err(|error| scene::located(&loaded, &error))?.drawing, "Setting")
     } else {
         let diagram = diagram(arguments, &loaded)?;

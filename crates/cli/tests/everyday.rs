@@ -252,7 +252,7 @@ fn check_tells_of_the_photograph() {
             "device.0={kind=\"sphere-cloak\",outer=0.2,inner=0.1}",
             "device 0 is less than 4 pixels large in the picture",
         ),
-        ("photograph.x=-300", "no light comes from the photograph, which is at"),
+        ("photograph.x=-300", "none comes from the photograph, which is at"),
         ("device.0.rotation=0.1745", "device.0.rotation is 0.1745, which looks like radians"),
         ("camera.field_of_view=0.6981", "angles are in degrees: 40"),
     ] {

@@ -89,7 +89,7 @@ fn drawn<E>(panel: &Panel, loaded: &Loaded, maker: &mut PanelMaker<'_, E>) -> Re
 where
     E: From<SceneFileError> + From<IllustrationError> + From<OutputError>,
 {
-    let drawn = setting(&loaded.scene);
+    let drawn = setting(&loaded.scene, loaded.scene.camera.resolution);
     let Setting { drawing, metadata, .. } =
         drawn.map_err(|error| loaded.locations.error_at(&error.key(), error.to_string()))?;
     let (size, name) = (maker.settings.size, file(panel.name));

@@ -111,6 +111,12 @@ impl Plot {
         for (curve, at) in marks {
             mark(&mut drawing, curve, at);
         }
+        // Long words are smaller.
+        let room = (COLUMN - LEFT - 8.0) * MM;
+        let widest = keyed
+            .iter()
+            .map(|Curve { label, .. }| Words::new(label.as_str(), DVec2::ZERO, TYPE * MM).width());
+        let text = TYPE * MM * (room / widest.fold(room, f64::max));
         for (i, Curve { label, .. }) in keyed.iter().enumerate() {
             let at = DVec2::new(LEFT + 3.5, 2.6 + KEY_LINE * i as f64) * MM;
             let ends = [at - DVec2::X * 3.0 * MM, at + DVec2::X * 3.0 * MM];
@@ -118,8 +124,7 @@ impl Plot {
                 drawing.add_line("key", ends, stroke(i));
             }
             mark(&mut drawing, i, at);
-            let words =
-                Words::new(label.as_str(), at + DVec2::X * 4.5 * MM, TYPE * MM).anchored(0.0);
+            let words = Words::new(label.as_str(), at + DVec2::X * 4.5 * MM, text).anchored(0.0);
             drawing.add_words("key-words", words);
         }
         drawing

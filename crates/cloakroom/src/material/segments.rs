@@ -2,7 +2,7 @@
 
 use super::{MaterialError, chosen};
 use crate::assembly::Assembly;
-use crate::device::{HomogeneousRegion, Region};
+use crate::device::{HomogeneousRegion, Region, RegionBorder};
 use crate::output::{OutputError, WriteSeek, format_of, write_whole};
 use crate::scene::Scene;
 use glam::{DMat3, DVec2, DVec3};
@@ -83,16 +83,20 @@ pub fn segments(
         optic_axis: medium.and_then(Medium::optic_axis).map(towards_x),
     };
     let of_medium = section.regions.iter().filter_map(|region| {
-        let Region::Homogeneous(HomogeneousRegion { medium, .. }) = &region.region else {
+        // Of what is round or ends at slanted faces a cut says too little.
+        let Region::Homogeneous(HomogeneousRegion { medium, border, .. }) = &region.region else {
             return None;
         };
+        if !matches!(border, RegionBorder::Faces(_)) {
+            return None;
+        }
         Some(segment(region.border.first()?.corners(), Some(medium)))
     });
     let mut segments: Vec<Segment> = of_medium.collect();
     if segments.is_empty() {
         let (device, kind) = (scene.device_name(device), scene.devices[device].kind());
         let problem =
-            "has no homogeneous segments to list: it is a single body, or its medium is graded";
+            "has no homogeneous segments to list: it is no prism, or its medium is graded";
         return Err(MaterialError::Unsuitable { device, kind, problem });
     }
     let metal = section.metal.iter().filter(|contour| contour.closed);

@@ -37,14 +37,17 @@ pub(super) fn find_column(columns: &[Column], name: &str) -> Result<usize, Unkno
 #[must_use]
 pub fn name_and_unit(key: &str) -> (String, &'static str) {
     let name = key.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(key);
-    let words = name.replace('_', " ");
+    let unit = unit_of(name);
+    // A unit stands behind the name, and not in it.
+    let bare = name.strip_suffix(unit).and_then(|bare| bare.strip_suffix('_')).unwrap_or(name);
+    let words = bare.replace('_', " ");
     let mut letters = words.chars();
     let title = match letters.next() {
         // The symbols w and h of a map stay small.
         Some(first) if words.len() > 1 => first.to_uppercase().chain(letters).collect(),
         _ => words,
     };
-    (title, unit_of(name))
+    (title, unit)
 }
 
 /// The unit of a key, from the lists of keys.

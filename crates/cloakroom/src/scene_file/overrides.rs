@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// The deepest key there is; anything deeper is refused before a tree of it is built.
 const DEEPEST: usize = 16;
 
+/// What people call the entries of places and directions.
+const COORDINATES: [&str; 3] = ["x", "y", "z"];
+
 /// What is set in a scene: one key.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Override {
@@ -176,8 +179,14 @@ fn apply_one(
 ) -> Result<Option<usize>, String> {
     // What a list is that the scene does not write: an entry of it can be set alone.
     let is_list = |end: usize| path.get(end).is_some_and(|next| next.parse::<usize>().is_ok());
+    // Its entries have no names, which is told where they are looked for.
+    let is_named = |end: usize| path.get(end).is_some_and(|next| COORDINATES.contains(&&**next));
     let unwritten: Vec<Option<Value>> = (1..=path.len())
-        .map(|end| key_at(root, &path[..end]).filter(|_| is_list(end)).and_then(|k| (k.default)()))
+        .map(|end| {
+            key_at(root, &path[..end])
+                .filter(|_| is_list(end) || is_named(end))
+                .and_then(|k| (k.default)())
+        })
         .collect();
     let mut walked = String::new();
     let mut place = root;
@@ -280,7 +289,7 @@ fn entry<'a>(
     let count = items.len();
     let Ok(index) = key.parse::<usize>() else {
         let (word, key) = (key, quoted(key, '`'));
-        let axis = ["x", "y", "z"].iter().position(|axis| *axis == word).filter(|i| *i < count);
+        let axis = COORDINATES.iter().position(|axis| *axis == word).filter(|i| *i < count);
         if let Some(number) = axis {
             return Err(format!(
                 "the entries of {walked} have numbers and no names: {walked}.{number}"

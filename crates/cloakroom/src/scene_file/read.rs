@@ -262,8 +262,10 @@ fn unknown_table(name: &str, root: &Value) -> String {
     if let Some(meant) = meant {
         return format!("there is no {word}; here it is called `{meant}`");
     }
-    let known: Vec<_> = TABLES.iter().map(|&(name, _)| name).chain([DEVICES]).collect();
-    unknown("table", name, "", &known)
+    let devices = root.entry(DEVICES).and_then(Value::as_list).unwrap_or_default().iter();
+    let names = devices.filter_map(|device| device.entry(key!(Placement.name))?.as_text());
+    let tables = TABLES.iter().map(|&(name, _)| name).chain([DEVICES]);
+    unknown("table", name, "", &tables.chain(names).collect::<Vec<_>>())
 }
 
 /// Where the devices of a scene are, as in `device.0`, and the keys of each; of a scene without devices where

@@ -132,8 +132,10 @@ impl RayDiagram {
             return Err(DiagramError::Inside { device });
         }
         let limits = Limits { min_power: settings.min_power, tolerance: scene.trace.tolerance };
-        // How far leaves are followed.
-        let reach = 2.0 * scenery.start();
+        // How far leaves are followed: as far beyond the devices as rays start before them.
+        let middle = scenery.middle();
+        let before = launches.iter().map(|launch| launch.origin.truncate().distance(middle));
+        let reach = scenery.start() + before.fold(scenery.start(), f64::max);
         let trees: Vec<Vec<Line>> = launches
             .par_iter()
             .map(|launch| {

@@ -23,6 +23,8 @@ pub(super) struct Neighbours<'a> {
     pub devices: Vec<&'a Subject<'a>>,
     /// What will be written there.
     pub labels: &'a [Words],
+    /// What else is there.
+    pub shapes: &'a [Vec<DVec2>],
 }
 
 /// A device, and where it is drawn.
@@ -142,7 +144,7 @@ impl Sketch<'_> {
         }
     }
 
-    /// Whether a label would lie on no other one, on none of `others` that do not hold the device, and not on the
+    /// Whether a label would lie on the sheet, on no other one, on none of `others` that do not hold the device, and not on the
     /// device itself if it is outside of it (`way` 1).
     fn can_be_read(&self, label: &Words, way: f64, others: &Neighbours<'_>) -> bool {
         let corners = label.corners();
@@ -164,10 +166,13 @@ impl Sketch<'_> {
         };
         let own = (way > 0.0).then_some(self.subject);
         let devices = others.devices.iter().filter(|other| !around(other)).copied().chain(own);
-        labels.flat_map(|class| self.drawing.of_class(class)).all(is_apart)
+        let on_sheet = |at: &DVec2| at.min_element() >= 0.0 && at.cmple(self.drawing.size).all();
+        corners.iter().all(on_sheet)
+            && labels.flat_map(|class| self.drawing.of_class(class)).all(is_apart)
             && others.labels.iter().all(is_clear)
             && devices
                 .flat_map(|other| other.places(self.view, &other.section.outlines))
+                .chain(others.shapes.iter().cloned())
                 .map(|points| Contour { points, closed: true })
                 .all(|shape| !points.iter().any(|point| shape.surrounds(*point)))
     }

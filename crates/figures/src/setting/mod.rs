@@ -33,7 +33,7 @@ use subject::Subject;
 /// The drawing of a setting.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
-    /// The drawing, of the aspect of the scene's picture.
+    /// The drawing.
     pub drawing: Drawing,
     /// Where on it the points of the scene are, for whoever wants to draw more.
     pub view: View,
@@ -64,7 +64,7 @@ const SKY: Ink = Ink::new([86, 180, 233]);
 
 /// Draws the setting of a scene: a projection on the xy-plane (x to the right, y up, z out of the
 /// page), to scale. Every device is cut in the plane z = 0 of its own frame; one that would be
-/// small is drawn once more, magnified.
+/// small is drawn once more, magnified. The sheet is of the aspect of `size`, in pixels.
 ///
 /// # Errors
 ///
@@ -78,17 +78,17 @@ const SKY: Ink = Ink::new([86, 180, 233]);
 ///
 /// let text = "[[device]]\nkind = \"square-cloak\"";
 /// let scene = cloakroom::scene_file::parse(text, "scene", Path::new(""), &[])?.scene;
-/// let setting = setting(&scene)?;
+/// let setting = setting(&scene, scene.camera.resolution)?;
 /// let svg = setting.drawing.to_svg("A square cloak", &setting.metadata);
 /// assert!(svg.contains("aria-label=\"14.1 cm\""));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
+pub fn setting(scene: &Scene, size: [u32; 2]) -> Result<Setting, PreparedSceneError> {
     let prepared = PreparedScene::new(scene)?;
     let devices = Devices::new(&prepared.assembly);
     let subjects = &devices.subjects;
     let stage = Stage::new(scene, &prepared);
-    let sheet = sheet(scene.camera.resolution);
+    let sheet = sheet(size);
     let layout = Layout::new(sheet, &stage, subjects, devices.has_bar());
     let mut drawing = Drawing::new(sheet, TEXT);
     stage.draw_behind(&mut drawing, &layout.view);
@@ -96,7 +96,8 @@ pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
     let whole: Vec<_> =
         order.iter().map(|index| (&subjects[*index], !layout.is_magnified(*index))).collect();
     let labels = stage.labels(&layout.view);
-    devices.draw_measured(&mut drawing, &layout.view, &whole, &labels);
+    let photograph = [layout.view.places(&stage.photograph())];
+    devices.draw_measured(&mut drawing, &layout.view, &whole, (&labels, &photograph));
     for inset in &layout.insets {
         inset.draw_frame(&mut drawing, &layout.view);
     }
@@ -107,7 +108,7 @@ pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
         let is_in = |index: &&usize| inset.group.subjects.contains(*index);
         let shown: Vec<_> =
             order.iter().filter(is_in).map(|index| (&subjects[*index], true)).collect();
-        devices.draw_measured(&mut drawing, &inset.view, &shown, &[]);
+        devices.draw_measured(&mut drawing, &inset.view, &shown, (&[], &[]));
         legend::draw(&mut drawing, inset.legend, &shown);
     }
     devices.draw_bar(&mut drawing, layout.bar);
@@ -154,13 +155,13 @@ impl<'s> Devices<'s> {
 
     /// Draws devices from back to front, and where it says so in detail: with the axes of their
     /// media and, before everything else so that they can be read, their dimensions, where there is room
-    /// between them and beside `labels`.
+    /// between them and beside labels and shapes.
     fn draw_measured(
         &self,
         drawing: &mut Drawing,
         view: &View,
         shown: &[(&Subject<'_>, bool)],
-        labels: &[Words],
+        (labels, shapes): (&[Words], &[Vec<DVec2>]),
     ) {
         self.draw_shapes(drawing, view, shown);
         for (place, (subject, _)) in shown.iter().enumerate().filter(|(_, (_, detail))| *detail) {
@@ -173,7 +174,7 @@ impl<'s> Devices<'s> {
             if !shown.iter().enumerate().any(is_inner) && !shown.iter().any(crowds) {
                 let devices = shown.iter().map(|(other, _)| *other);
                 let devices = devices.filter(|other| !std::ptr::eq(*other, *subject)).collect();
-                let others = Neighbours { devices, labels };
+                let others = Neighbours { devices, labels, shapes };
                 Sketch { drawing, view, subject }.draw_dimensions(&others);
             }
         }

@@ -20,6 +20,11 @@ fn scene(text: &str) -> Scene {
     scene
 }
 
+/// On a sheet of the aspect of the picture.
+fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
+    super::setting(scene, scene.camera.resolution)
+}
+
 fn drawn(text: &str) -> Setting {
     setting(&scene(text)).expect(text)
 }

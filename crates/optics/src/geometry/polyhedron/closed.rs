@@ -3,6 +3,7 @@
 use super::tree::Aabb;
 use super::{Polyhedron, Triangles, behind};
 use glam::DVec3;
+use robust::{Coord, orient2d};
 use std::collections::HashMap;
 
 /// A surface of more triangles is taken for a mistake.
@@ -186,42 +187,63 @@ pub(super) fn shells(neighbours: &[[u32; 3]]) -> Vec<u32> {
 }
 
 impl Polyhedron {
-    /// Refuses parts that show the wrong side: an outer one stands in no other, and a hollow is in
-    /// one.
+    /// Refuses parts that cross, and those that show the wrong side: an outer one stands in no other, and a hollow is
+    /// in one.
     pub(super) fn check_shells(&self, shells: &[u32]) -> Result<(), MeshFault> {
         let count = shells.iter().max().map_or(0, |most| most + 1);
         if count == 1 {
             return Ok(());
         }
-        let mut first: Vec<Option<usize>> = vec![None; count as usize];
         let mut volumes = vec![0.0; count as usize];
-        for (triangle, shell) in shells.iter().enumerate() {
-            first[*shell as usize].get_or_insert(triangle);
-            volumes[*shell as usize] += volume(self.piece(triangle as u32));
-        }
-        for (shell, volume) in (0u32..).zip(volumes) {
-            let at = first[shell as usize].map(|triangle| self.piece(triangle as u32)[0]);
-            let Some(at) = at else { continue };
-            // Hollows show their insides: only how often they are crossed tells on which side one is.
-            let within = |at: DVec3| {
-                self.crossings(at, |triangle| shells[triangle as usize] != shell) % 2 == 1
-            };
-            let inside = within(at);
-            if inside != (volume < 0.0) {
+        // A point of each, and whether it lies within others.
+        let mut sides: Vec<Option<(DVec3, bool)>> = vec![None; count as usize];
+        let mut looked_at = vec![false; self.corners.len()];
+        for (triangle, &shell) in (0u32..).zip(shells) {
+            let piece = self.piece(triangle);
+            volumes[shell as usize] += volume(piece);
+            let corners = self.triangles[triangle as usize].into_iter().zip(piece);
+            let corners = corners
+                .filter(|(corner, _)| !std::mem::replace(&mut looked_at[*corner as usize], true));
+            let middle = (piece[0] + piece[1] + piece[2]) / 3.0;
+            let points: Vec<DVec3> = corners.map(|(_, at)| at).chain([middle]).collect();
+            for at in points.into_iter().filter(|at| !self.touches_other(*at, shell, shells)) {
+                // Hollows show their insides: only how often they are crossed tells on which side one is.
+                let other = |triangle: u32| shells[triangle as usize] != shell;
+                let inside = self.crossings(at, other) % 2 == 1;
                 // Where edges meet edges, parts cross and no edge goes through a triangle.
-                let own = (0u32..).zip(shells).filter(|(_, of)| **of == shell);
-                let mut corners = own.flat_map(|(number, _)| self.piece(number));
-                return Err(match corners.find(|corner| within(*corner) != inside) {
-                    Some(_) => MeshFault::Crossing(at),
-                    None => MeshFault::Shell { at, inside },
-                });
+                match sides[shell as usize] {
+                    None => sides[shell as usize] = Some((at, inside)),
+                    Some((_, known)) if known != inside => return Err(MeshFault::Crossing(at)),
+                    Some(_) => {}
+                }
+            }
+        }
+        for (side, volume) in sides.into_iter().zip(volumes) {
+            if let Some((at, inside)) = side.filter(|(_, inside)| *inside != (volume < 0.0)) {
+                return Err(MeshFault::Shell { at, inside });
             }
         }
         Ok(())
     }
 
-    /// Refuses surfaces that cross themselves: an edge of one triangle goes through another, or two
-    /// neighbours lie on each other. What only touches passes.
+    /// Whether a point of a shell lies on another one.
+    fn touches_other(&self, at: DVec3, shell: u32, shells: &[u32]) -> bool {
+        let mut touches = false;
+        self.tree.near(&Aabb::around([at]), 0.0, |triangle| {
+            touches |= shells[triangle as usize] != shell && {
+                let [a, b, c] = self.piece(triangle);
+                let normal = self.normals[triangle as usize];
+                let is_left =
+                    |(from, to): (DVec3, DVec3)| (to - from).cross(at - from).dot(normal) >= 0.0;
+                behind([a, b, c], at) == 0.0 && [(a, b), (b, c), (c, a)].into_iter().all(is_left)
+            };
+        });
+        touches
+    }
+
+    /// Refuses surfaces that cross themselves: an edge of one triangle goes through another, two
+    /// neighbours lie on each other, or two in one plane do that have the solid on the same side. What only touches
+    /// passes.
     pub(super) fn check_crossings(&self) -> Result<(), MeshFault> {
         for (number, triangle) in (0u32..).zip(&self.triangles) {
             let piece = self.piece(number);
@@ -237,6 +259,14 @@ impl Polyhedron {
                     let [a, b] = ends.map(|corner| self.corners[corner as usize]);
                     if ends.iter().all(|end| !triangle.contains(end)) && pierces(a, b, piece) {
                         crossing = Some(0.5 * (a + b));
+                    }
+                }
+                let other_piece = third.map(|corner| self.corners[corner as usize]);
+                let alike = self.normals[number as usize].dot(self.normals[other as usize]) > 0.0;
+                if alike && other_piece.iter().all(|at| behind(piece, *at) == 0.0) {
+                    let normal = self.normals[number as usize];
+                    if overlap_in_plane(piece, other_piece, normal) {
+                        crossing = Some(other_piece[0]);
                     }
                 }
                 let shared = third.iter().filter(|corner| triangle.contains(corner)).count();
@@ -265,4 +295,19 @@ pub(super) fn pierces(from: DVec3, to: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
         let turns = [(a, b), (b, c), (c, a)].map(|(a, b)| behind([from, to, a], b));
         turns.iter().all(|turn| *turn > 0.0) || turns.iter().all(|turn| *turn < 0.0)
     }
+}
+
+/// Whether the insides of two triangles in one plane meet; `normal` is that of both, exactly by the signs.
+fn overlap_in_plane(one: [DVec3; 3], other: [DVec3; 3], normal: DVec3) -> bool {
+    // Seen along the axis nearest to the normal, which loses no digits.
+    let axis = normal.abs().max_position();
+    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    let flat = |triangle: [DVec3; 3]| triangle.map(|at| Coord { x: at[u], y: at[v] });
+    let (one, other) = (flat(one), flat(other));
+    // An edge with all of the other one behind it.
+    let separates = |a: [Coord<f64>; 3], b: [Coord<f64>; 3]| {
+        let turn = orient2d(a[0], a[1], a[2]);
+        (0..3).any(|i| b.iter().all(|at| orient2d(a[i], a[(i + 1) % 3], *at) * turn <= 0.0))
+    };
+    !separates(one, other) && !separates(other, one)
 }

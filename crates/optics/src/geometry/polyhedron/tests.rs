@@ -270,6 +270,35 @@ fn what_bounds_no_solid_is_told() {
     }
 }
 
+/// Where edges meet edges, and faces lie in the planes of others, parts cross as well.
+#[test]
+fn parts_that_overlap_are_refused_however_they_lie() {
+    let cube = cuboid(DVec3::ZERO, DVec3::splat(6.0));
+    for number in 0..11 * 11 * 11 {
+        let shift = DVec3::from_array([1, 11, 121].map(|n| f64::from(number / n % 11 - 5)));
+        let mut both = cube.clone();
+        add(&mut both, &moved(&cube, |at| at + shift));
+        assert!(Polyhedron::new(&both).is_err(), "{shift}");
+    }
+    // What only touches is taken.
+    for shift in [DVec3::new(6.0, 1.0, 2.0), DVec3::new(-6.0, 3.0, 3.0), DVec3::new(1.0, 6.0, -5.0)]
+    {
+        let mut both = cube.clone();
+        add(&mut both, &moved(&cube, |at| at + shift));
+        let solid = Polyhedron::new(&both).expect("it touches");
+        assert!((solid.volume() - 432.0).abs() < 1e-9);
+    }
+    // Two tetrahedra in the corners of a cube: all corners are outside of the other, and edges cross edges in their
+    // middles.
+    let corners = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]];
+    let corners = corners.map(|at| DVec3::from_array(at.map(f64::from))).to_vec();
+    let one = Triangles { corners, triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]] };
+    let mut both = one.clone();
+    add(&mut both, &turned(&moved(&one, |at| -at)));
+    let crossing = Polyhedron::new(&both).err();
+    assert!(matches!(crossing, Some(MeshFault::Crossing(_))), "{crossing:?}");
+}
+
 /// Whatever the order of the triangles, and wherever a hollow is.
 #[test]
 fn hollows_are_taken() {
