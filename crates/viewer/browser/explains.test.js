@@ -311,6 +311,77 @@ test("one turn is saved as a film", async () => {
   await page.close();
 });
 
+// The frames of a GIF as the browser decodes them: RGBA, and how long each stays, in seconds.
+function framesOf(page, bytes) {
+  return page.evaluate(async (base64) => {
+    const data = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+    const decoder = new ImageDecoder({ data, type: "image/gif" });
+    await decoder.completed;
+    await decoder.tracks.ready;
+    const frames = [];
+    for (let frameIndex = 0; frameIndex < decoder.tracks.selectedTrack.frameCount; frameIndex += 1) {
+      const { image } = await decoder.decode({ frameIndex });
+      const [width, height] = [image.displayWidth, image.displayHeight];
+      const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+      context.drawImage(image, 0, 0);
+      frames.push({ width, height, seconds: image.duration / 1e6, data: Array.from(context.getImageData(0, 0, width, height).data) });
+      image.close();
+    }
+    return frames;
+  }, bytes.toString("base64"));
+}
+
+const apart = (one, other) => one.data.reduce((sum, value, i) => sum + Math.abs(value - other.data[i]), 0) / one.data.length;
+
+test("one turn is saved as a GIF", async () => {
+  const { page, complaints } = await open();
+  await small(page, "1");
+  const shown = await pixels(page);
+  const download = page.waitForEvent("download", { timeout: 240000 });
+  await page.click("#save-gif");
+  const saved = await download;
+  assert.equal(saved.suggestedFilename(), "cloakroom.gif");
+  const frames = await framesOf(page, readFileSync(await saved.path()));
+  assert.equal(frames.length, 45);
+  for (const frame of frames) assert.deepEqual([frame.width, frame.height], [320, 240]);
+  assert.ok(Math.abs(frames.reduce((sum, { seconds }) => sum + seconds, 0) - 3) < 0.02);
+  // It begins as the page does, and half a turn shows the same; a quarter shows something else.
+  const [first, quarter] = [apart(frames[0], shown), apart(frames[11], shown)];
+  assert.ok(first < 6 && quarter > 2 * first, `${first} ${quarter}`);
+  await finished(page);
+  assert.equal(await page.inputValue("#rotation-number"), "10");
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("a GIF has every pixel, however its codes run", async () => {
+  const { page, complaints } = await open();
+  // Few colors far apart, so that neither palette nor dither changes them: noise, for all codes are used up, and pictures of one color or pixel.
+  const films = await page.evaluate(async () => {
+    const { gif } = await import("./gif.js");
+    const colors = [[0, 0, 0], [255, 0, 0], [0, 255, 0], [255, 255, 255]];
+    let seed = 1;
+    const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+    const films = [];
+    for (const [width, height, count, frames] of [[200, 150, 4, 3], [150, 100, 2, 2], [300, 300, 1, 2], [1, 1, 1, 1], [258, 1, 3, 1]]) {
+      const images = Array.from({ length: frames }, () => {
+        const image = new ImageData(width, height);
+        for (let i = 0; i < image.data.length; i += 4) image.data.set([...colors[Math.floor(count * random())], 255], i);
+        return image;
+      });
+      const bytes = new Uint8Array(await (await gif(images, 15, async () => {})).arrayBuffer());
+      films.push({ bytes: Array.from(bytes), images: images.map(({ data }) => Array.from(data)) });
+    }
+    return films;
+  });
+  for (const { bytes, images } of films) {
+    const frames = await framesOf(page, Buffer.from(bytes));
+    assert.deepEqual(frames.map(({ data }) => data), images);
+  }
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
 test("corners of one's own prisms are moved, all prisms that share one together", async () => {
   const { page, complaints } = await open("#prisms");
   await small(page, "1");

@@ -3,7 +3,7 @@
 import { caption, isOwn, plainCaption } from "./caption.js";
 import { LAMPS, fillLists, showMoment, showRotation, showSpectrum, showSplit, showState, showTime } from "./choices.js";
 import { Connection } from "./connection.js";
-import { canFilm, film } from "./film.js";
+import { animated, canRecord, recorded } from "./film.js";
 import { gallery } from "./gallery.js";
 import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
 import { words } from "./line.js";
@@ -461,9 +461,9 @@ $("copy-embed").addEventListener("click", () => {
   const source = `${location.href.split("#")[0]}${state.address("rotation")}&lang=${language}`;
   copyText(`<iframe src="${source}" width="480" height="520" style="border: 0" title="cloakroom"></iframe>`, say("embedded"));
 });
-$("save-film").addEventListener("click", async () => {
-  if (!canFilm()) return tell(say("filmed.not"));
-  if (filming || !state.device) return undefined;
+// `make` is a way to make a film.
+async function film(make) {
+  if (filming || !state.device) return;
   stop();
   const before = state.device.rotation ?? 0;
   // Twice the pixels, which the canvas makes smaller, are four samples a pixel.
@@ -479,8 +479,8 @@ $("save-film").addEventListener("click", async () => {
   filming = { shown: () => {}, stop: () => {} };
   document.body.dataset.finished = "false";
   try {
-    const blob = await film(picture.canvas, before, turn, (share) => tell(say("filming", { p: Math.round(100 * share) }), true));
-    download(blob, blob.type === "video/mp4" ? "cloakroom.mp4" : "cloakroom.webm");
+    const blob = await make(picture.canvas, before, turn, (share) => tell(say("filming", { p: Math.round(100 * share) }), true));
+    download(blob, `cloakroom.${blob.type.split("/")[1]}`);
     tell(say("filmed"));
   } catch (error) {
     $("toast").hidden = true;
@@ -489,8 +489,10 @@ $("save-film").addEventListener("click", async () => {
   filming = null;
   state.device.rotation = before;
   showRotation(state);
-  return changed();
-});
+  changed();
+}
+$("save-film").addEventListener("click", () => (canRecord() ? film(recorded) : tell(say("filmed.not"))));
+$("save-gif").addEventListener("click", () => film(animated));
 function fullScreen() {
   const view = document.querySelector(".view");
   if (document.fullscreenElement) document.exitFullscreen();
