@@ -3,6 +3,7 @@
 import { caption, isOwn, plainCaption } from "./caption.js";
 import { LAMPS, fillLists, showMoment, showRotation, showSpectrum, showSplit, showState, showTime } from "./choices.js";
 import { Connection } from "./connection.js";
+import { writeFault } from "./faults.js";
 import { animated, canRecord, recorded } from "./film.js";
 import { gallery } from "./gallery.js";
 import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
@@ -103,8 +104,7 @@ function enter() {
   if (named && !linked) {
     damaged = true;
     $("banner-text").textContent = say("damaged");
-    $("retry").hidden = true;
-    $("banner").hidden = false;
+    showBanner();
   }
 }
 
@@ -216,14 +216,18 @@ function progress({ id, samples, share }) {
   $("progress").value = (samples * share) / state.samples;
 }
 
+function showBanner(isOver = false) {
+  $("retry").hidden = !isOver;
+  $("banner").hidden = false;
+}
+
 function failed({ id, message, key }) {
   connection.failed(id);
   if (gallery.isOpen) return nextCard();
   filming?.stop();
   if (id !== null && id < wanted) return;
-  $("banner-text").textContent = key ? `${key}: ${message}` : message;
-  $("retry").hidden = true;
-  $("banner").hidden = false;
+  writeFault($("banner-text"), message, key);
+  showBanner();
   $("progress").hidden = true;
 }
 
@@ -235,8 +239,7 @@ function gone() {
   stop();
   filming?.stop();
   $("banner-text").textContent = say(hello ? words.lost : words.refused);
-  $("banner").hidden = false;
-  $("retry").hidden = false;
+  showBanner(true);
 }
 $("retry").addEventListener("click", () => connection.open());
 
@@ -322,7 +325,8 @@ function download(blob, name) {
 function bring(file) {
   if (!file) return;
   if (hello && file.size > hello.largest_photograph_bytes) {
-    failed({ id: null, message: say("too_large", { n: hello.largest_photograph_bytes >> 20 }) });
+    $("banner-text").textContent = say("too_large", { n: hello.largest_photograph_bytes >> 20 });
+    showBanner();
     return;
   }
   // The server takes plain names of 200 bytes: the end, with what kind of file it is.
