@@ -34,7 +34,7 @@ impl Reencode for Sorted {
     ) -> Result<(), Error> {
         let types: Vec<u32> = from.into_iter().collect::<Result<_, _>>()?;
         for old in &self.order {
-            to.function(self.type_index(types[*old])?);
+            to.function(types[*old]);
         }
         Ok(())
     }
