@@ -311,6 +311,119 @@ test("one turn is saved as a film", async () => {
   await page.close();
 });
 
+test("a German page says in German what is wrong, and of sentences that it does not know that they are English", async () => {
+  // A scene as an address, and what is said of it in either language.
+  const opened = async (scene) => {
+    const fragment = `#${Buffer.from(JSON.stringify({ scene, samples: 1, width: 320 })).toString("base64url")}`;
+    const { page } = await openPage(browser.context, server.address, fragment);
+    await page.waitForSelector("#banner:not([hidden])");
+    const [said, foreign] = await page.locator("#banner-text").evaluate((element) => [element.textContent, Boolean(element.querySelector("[lang=en]"))]);
+    await page.close();
+    return { said, foreign };
+  };
+  const cloak = { kind: "square-cloak" };
+  const scenes = [
+    { device: [{ kind: "luneburg-lens", radius: -5 }] },
+    { device: [{ ...cloak, kappa: 7 }] },
+    { device: [cloak, { ...cloak, position: [5, 0, 0], name: "left" }] },
+    { device: [{ kind: "body", shape: "box" }, { kind: "body", shape: "box" }] },
+    { device: [cloak], camera: { position: [1, 0, 0] } },
+    { device: [{ ...cloak, position: [50, 0, 0] }] },
+    { device: [cloak], photograph: { image: "/etc/passwd" } },
+    { device: [{ kind: "cylinder-cloak", inner: 9, outer: 5 }] },
+    { device: [{ kind: "body", colour: 1 }] },
+  ];
+  const known = [/Radius ist -5 cm; erlaubt ist/, /Kappa ist 7; erlaubt ist/, /Gerät 1 \("left"\) und Gerät 0 überlappen sich; eines/, /denselben Vorrang/, /Die Kamera steht in Gerät 0/,
+    /Gerät 0 .* ragt durch das Foto/, /kann keine öffnen/,
+    /erlaubt ist 0.005 bis 4.995 cm, das 0.001- bis 0.999-Fache von außen/, /sagt auf Englisch, warum: unknown key `colour`/];
+  const { page } = await open();
+  await choose(page, "language", "de");
+  for (const [i, scene] of scenes.entries()) {
+    const { said, foreign } = await opened(scene);
+    assert.match(said, known[i]);
+    assert.equal(foreign, i === scenes.length - 1, said);
+  }
+  await choose(page, "language", "en");
+  for (const scene of scenes) {
+    const { said, foreign } = await opened(scene);
+    assert.ok(foreign && !/ist|Gerät|Englisch/.test(said.replaceAll(/exist|list/g, "")), said);
+  }
+  await page.close();
+});
+
+// Of each frame of a GIF, as the browser decodes it: its size, how long it stays, in seconds, and how far it is from each of some pictures, the
+// mean over its bytes.
+function framesOf(page, bytes, pictures) {
+  return page.evaluate(async ([base64, pictures]) => {
+    const data = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+    const decoder = new ImageDecoder({ data, type: "image/gif" });
+    await decoder.completed;
+    await decoder.tracks.ready;
+    const frames = [];
+    for (let frameIndex = 0; frameIndex < decoder.tracks.selectedTrack.frameCount; frameIndex += 1) {
+      const { image } = await decoder.decode({ frameIndex });
+      const [width, height] = [image.displayWidth, image.displayHeight];
+      const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+      context.drawImage(image, 0, 0);
+      const { data } = context.getImageData(0, 0, width, height);
+      const apart = pictures.map((picture) => data.reduce((sum, value, i) => sum + Math.abs(value - picture[i]), 0) / data.length);
+      frames.push({ width, height, seconds: image.duration / 1e6, apart });
+      image.close();
+    }
+    return frames;
+  }, [bytes.toString("base64"), pictures]);
+}
+
+test("one turn is saved as a GIF", async () => {
+  const { page, complaints } = await open();
+  await small(page, "1");
+  const shown = await pixels(page);
+  const download = page.waitForEvent("download", { timeout: 240000 });
+  await page.click("#save-gif");
+  const saved = await download;
+  assert.equal(saved.suggestedFilename(), "cloakroom.gif");
+  const frames = await framesOf(page, readFileSync(await saved.path()), [shown.data]);
+  assert.equal(frames.length, 45);
+  for (const frame of frames) assert.deepEqual([frame.width, frame.height], [320, 240]);
+  assert.ok(Math.abs(frames.reduce((sum, { seconds }) => sum + seconds, 0) - 3) < 0.02);
+  // It begins as the page does; a quarter of a turn shows something else.
+  const [first, quarter] = [frames[0], frames[11]].map(({ apart }) => apart[0]);
+  assert.ok(first < 6 && quarter > 2 * first, `${first} ${quarter}`);
+  await finished(page);
+  assert.equal(await page.inputValue("#rotation-number"), "10");
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("a GIF has every pixel, however its codes run", async () => {
+  const { page, complaints } = await open();
+  // Few colors far apart, so that neither palette nor dither changes them: noise, for all codes are used up, and pictures of one color or pixel.
+  const films = await page.evaluate(async () => {
+    const { gif } = await import("./gif.js");
+    const colors = [[0, 0, 0], [255, 0, 0], [0, 255, 0], [255, 255, 255]];
+    let seed = 1;
+    const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+    const films = [];
+    for (const [width, height, count, frames] of [[150, 120, 4, 3], [150, 100, 2, 2], [120, 120, 1, 2], [1, 1, 1, 1], [258, 1, 3, 1]]) {
+      const images = Array.from({ length: frames }, () => {
+        const image = new ImageData(width, height);
+        for (let i = 0; i < image.data.length; i += 4) image.data.set([...colors[Math.floor(count * random())], 255], i);
+        return image;
+      });
+      const bytes = new Uint8Array(await (await gif(images, 15, async () => {})).arrayBuffer());
+      films.push({ bytes: Array.from(bytes), images: images.map(({ data }) => Array.from(data)) });
+    }
+    return films;
+  });
+  for (const { bytes, images } of films) {
+    const frames = await framesOf(page, Buffer.from(bytes), images);
+    assert.equal(frames.length, images.length);
+    frames.forEach(({ apart }, i) => assert.equal(apart[i], 0));
+  }
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
 test("corners of one's own prisms are moved, all prisms that share one together", async () => {
   const { page, complaints } = await open("#prisms");
   await small(page, "1");

@@ -207,6 +207,9 @@ test("it is small", () => {
     all += bytes.length;
     loaded += gzipSync(bytes, { level: 9 }).length;
   }
+  const images = readdirSync(reduced).reduce((sum, name) => sum + readFileSync(join(reduced, name)).length, 0);
   assert.ok(all <= 6e6, `${all} bytes`);
   assert.ok(loaded <= 3e6, `${loaded} bytes compressed`);
+  // Code, fonts and page.
+  assert.ok(loaded - images <= 1.31e6, `${loaded - images} bytes compressed without images`);
 });

@@ -1,14 +1,8 @@
 // The parameters of a device as sliders, built from the catalogue.
 
-import { has, say } from "./words.js";
+import { nameOfKey as words, say } from "./words.js";
 
 const keys = document.getElementById("keys");
-
-// What a key is called: it may be followed by a component of it.
-function words(name) {
-  const [, key, rest] = /^(\S+)(.*)$/.exec(name);
-  return (has(`key.${key}`) ? say(`key.${key}`) : key.replaceAll("_", " ")) + rest;
-}
 
 // The range of a slider: the limits of the key where it has two, else around its default.
 function range(schema) {

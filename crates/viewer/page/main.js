@@ -3,7 +3,8 @@
 import { caption, isOwn, plainCaption } from "./caption.js";
 import { LAMPS, fillLists, showMoment, showRotation, showSpectrum, showSplit, showState, showTime } from "./choices.js";
 import { Connection } from "./connection.js";
-import { canFilm, film } from "./film.js";
+import { writeFault } from "./faults.js";
+import { animated, canRecord, recorded } from "./film.js";
 import { gallery } from "./gallery.js";
 import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
 import { words } from "./line.js";
@@ -103,8 +104,7 @@ function enter() {
   if (named && !linked) {
     damaged = true;
     $("banner-text").textContent = say("damaged");
-    $("retry").hidden = true;
-    $("banner").hidden = false;
+    showBanner();
   }
 }
 
@@ -216,14 +216,18 @@ function progress({ id, samples, share }) {
   $("progress").value = (samples * share) / state.samples;
 }
 
+function showBanner(isOver = false) {
+  $("retry").hidden = !isOver;
+  $("banner").hidden = false;
+}
+
 function failed({ id, message, key }) {
   connection.failed(id);
   if (gallery.isOpen) return nextCard();
   filming?.stop();
   if (id !== null && id < wanted) return;
-  $("banner-text").textContent = key ? `${key}: ${message}` : message;
-  $("retry").hidden = true;
-  $("banner").hidden = false;
+  writeFault($("banner-text"), message, key);
+  showBanner();
   $("progress").hidden = true;
 }
 
@@ -235,8 +239,7 @@ function gone() {
   stop();
   filming?.stop();
   $("banner-text").textContent = say(hello ? words.lost : words.refused);
-  $("banner").hidden = false;
-  $("retry").hidden = false;
+  showBanner(true);
 }
 $("retry").addEventListener("click", () => connection.open());
 
@@ -322,7 +325,8 @@ function download(blob, name) {
 function bring(file) {
   if (!file) return;
   if (hello && file.size > hello.largest_photograph_bytes) {
-    failed({ id: null, message: say("too_large", { n: hello.largest_photograph_bytes >> 20 }) });
+    $("banner-text").textContent = say("too_large", { n: hello.largest_photograph_bytes >> 20 });
+    showBanner();
     return;
   }
   // The server takes plain names of 200 bytes: the end, with what kind of file it is.
@@ -461,9 +465,9 @@ $("copy-embed").addEventListener("click", () => {
   const source = `${location.href.split("#")[0]}${state.address("rotation")}&lang=${language}`;
   copyText(`<iframe src="${source}" width="480" height="520" style="border: 0" title="cloakroom"></iframe>`, say("embedded"));
 });
-$("save-film").addEventListener("click", async () => {
-  if (!canFilm()) return tell(say("filmed.not"));
-  if (filming || !state.device) return undefined;
+// `make` is a way to make a film.
+async function film(make) {
+  if (filming || !state.device) return;
   stop();
   const before = state.device.rotation ?? 0;
   // Twice the pixels, which the canvas makes smaller, are four samples a pixel.
@@ -479,8 +483,8 @@ $("save-film").addEventListener("click", async () => {
   filming = { shown: () => {}, stop: () => {} };
   document.body.dataset.finished = "false";
   try {
-    const blob = await film(picture.canvas, before, turn, (share) => tell(say("filming", { p: Math.round(100 * share) }), true));
-    download(blob, blob.type === "video/mp4" ? "cloakroom.mp4" : "cloakroom.webm");
+    const blob = await make(picture.canvas, before, turn, (share) => tell(say("filming", { p: Math.round(100 * share) }), true));
+    download(blob, `cloakroom.${blob.type.split("/")[1]}`);
     tell(say("filmed"));
   } catch (error) {
     $("toast").hidden = true;
@@ -489,8 +493,10 @@ $("save-film").addEventListener("click", async () => {
   filming = null;
   state.device.rotation = before;
   showRotation(state);
-  return changed();
-});
+  changed();
+}
+$("save-film").addEventListener("click", () => (canRecord() ? film(recorded) : tell(say("filmed.not"))));
+$("save-gif").addEventListener("click", () => film(animated));
 function fullScreen() {
   const view = document.querySelector(".view");
   if (document.fullscreenElement) document.exitFullscreen();

@@ -53,6 +53,9 @@ const TABLE = {
   "save.scene": ["Save scene", "Szene speichern"],
   "save.film": ["Film", "Film"],
   "save.film.title": ["One turn of the device as a film (WebM)", "Eine Umdrehung des Geräts als Film (WebM)"],
+  "save.gif": ["GIF", "GIF"],
+  "save.gif.title": ["One turn of the device as a GIF, for slides and messages: smaller and with fewer colors than the film",
+    "Eine Umdrehung des Geräts als GIF, für Folien und Nachrichten: kleiner und mit weniger Farben als der Film"],
   "copy.link": ["Copy link", "Link kopieren"],
   "copy.embed": ["Embed", "Einbetten"],
   "copy.embed.title": ["Copy HTML that shows this view with one slider in a page of your own", "HTML kopieren, das diese Ansicht mit einem Regler in einer eigenen Seite zeigt"],
@@ -135,7 +138,8 @@ const TABLE = {
   embedded: ["The HTML is copied.", "Das HTML ist kopiert."],
   filming: ["Filming: {p} %", "Film: {p} %"],
   filmed: ["The film is saved.", "Der Film ist gespeichert."],
-  "filmed.not": ["This browser cannot record films.", "Dieser Browser kann keine Filme aufnehmen."],
+  "filmed.not": ["This browser cannot record films, but it can make a GIF.", "Dieser Browser kann keine Filme aufnehmen, aber ein GIF machen."],
+  "fault.english": ["", "Diese Szene lässt sich so nicht zeigen; das Programm sagt auf Englisch, warum: "],
   choosing: ["Arrow keys move the point to follow", "Pfeiltasten bewegen den Punkt, dem gefolgt wird"],
   orbiting: ["Arrow keys orbit the camera", "Pfeiltasten drehen die Kamera"],
   "lost.server": ["The server has ended, or cannot be reached.", "Der Server ist beendet oder nicht erreichbar."],
@@ -427,6 +431,12 @@ export function say(key, put = {}) {
 
 // The same without the marks of the glossary.
 export const plain = (key, put) => say(key, put).replace(/\[\[([^|\]]*)\|\w+\]\]/g, "$1");
+
+// What a key is called: it may be followed by a component of it.
+export function nameOfKey(name) {
+  const [, key, rest] = /^(\S+)(.*)$/.exec(name);
+  return (has(`key.${key}`) ? say(`key.${key}`) : key.replaceAll("_", " ")) + rest;
+}
 
 // A number as people write it.
 export const number = (value, digits = 1) => value.toLocaleString(language, { maximumFractionDigits: digits, useGrouping: false });

@@ -16,8 +16,9 @@ pub(crate) static ASSETS: &[(&str, &str, &[u8])] = assets! {
     "text/html": "/" "index.html";
     "text/css": "/style.css" "style.css";
     "image/svg+xml": "/icon.svg" "icon.svg";
-    "text/javascript": "/caption.js" "caption.js" "/choices.js" "choices.js" "/connection.js" "connection.js" "/controls.js" "controls.js"
-        "/corners.js" "corners.js" "/film.js" "film.js" "/gallery.js" "gallery.js" "/gestures.js" "gestures.js" "/line.js" "line.js"
-        "/main.js" "main.js" "/notes.js" "notes.js" "/numbers.js" "numbers.js" "/orbit.js" "orbit.js" "/picture.js" "picture.js"
+    "text/javascript": "/caption.js" "caption.js" "/choices.js" "choices.js" "/connection.js" "connection.js"
+        "/controls.js" "controls.js" "/corners.js" "corners.js" "/faults.js" "faults.js" "/film.js" "film.js"
+        "/gallery.js" "gallery.js" "/gestures.js" "gestures.js" "/gif.js" "gif.js" "/line.js" "line.js" "/main.js" "main.js"
+        "/notes.js" "notes.js" "/numbers.js" "numbers.js" "/orbit.js" "orbit.js" "/picture.js" "picture.js"
         "/section.js" "section.js" "/state.js" "state.js" "/tour.js" "tour.js" "/words.js" "words.js";
 };

@@ -3,8 +3,10 @@
 //! that the page was compiled with.
 
 mod one_file;
+mod order;
 
 use std::ffi::OsString;
+use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 use wasm_bindgen_cli_support::Bindgen;
@@ -30,11 +32,14 @@ fn compiled(compiled: &Path, folder: &Path) -> Result<(), String> {
         bindgen
             .typescript(false)
             .remove_producers_section(true)
-            .remove_name_section(true)
+            .demangle(false)
             .out_name("cloakroom")
             .generate(folder)
     });
-    made.map_err(|error| format!("{error:#}"))
+    made.map_err(|error| format!("{error:#}"))?;
+    let path = folder.join("cloakroom_bg.wasm");
+    let module = fs::read(&path).map_err(|error| error.to_string())?;
+    fs::write(&path, order::by_name(&module)?).map_err(|error| error.to_string())
 }
 
 #[allow(clippy::print_stderr, reason = "it has no other words")]
