@@ -26,6 +26,51 @@ _SCHEMA: dict[str, Any] = json.loads(_cloakroom.schema())
 _NAMES = {"trace": "TraceSettings", "picture": "PictureSettings"}
 
 
+def _refuse(self: Any, *values: Any, **keys: Any) -> Any:
+    raise TypeError("tables do not change, nor do lists and tables in them; .replace(KEY=...) gives another one")
+
+
+class _FixedList(list[Any]):
+    """A list in a table."""
+
+    __setitem__ = __delitem__ = __iadd__ = __imul__ = _refuse
+    append = extend = insert = remove = pop = clear = sort = reverse = _refuse
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        # A copy is a list like any other.
+        return list, (_plain(self),)
+
+
+class _FixedDict(dict[str, Any]):
+    """A table in a table."""
+
+    __setitem__ = __delitem__ = __ior__ = _refuse
+    pop = popitem = clear = update = setdefault = _refuse
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        return dict, (_plain(self),)
+
+
+def _fixed(value: Any) -> Any:
+    """A value in which lists and tables do not change."""
+    if isinstance(value, dict):
+        return _FixedDict((name, _fixed(inner)) for name, inner in value.items())
+    if isinstance(value, list):
+        inner = value and isinstance(value[0], (list, dict))
+        return _FixedList(map(_fixed, value) if inner else value)
+    return value
+
+
+def _plain(value: Any) -> Any:
+    """A copy that is the caller's own."""
+    if isinstance(value, dict):
+        return {name: _plain(inner) for name, inner in value.items()}
+    if isinstance(value, list):
+        inner = value and isinstance(value[0], (list, dict))
+        return list(map(_plain, value)) if inner else list(value)
+    return value
+
+
 class Table:
     """A table of a scene: keys and their values.
 
@@ -58,19 +103,19 @@ class Table:
                 raise ValueError("encoding is that of arrays; a file says by its format what its numbers are")
             if isinstance(image, _cloakroom.Image):
                 self._image, given["image"] = image, image.name
-        self._given = _cloakroom.fit(self._table, given)
+        self._given = _fixed(_cloakroom.fit(self._table, given))
 
     @classmethod
     def _of(cls, keys: Mapping[str, Any], image: _cloakroom.Image | None = None) -> Any:
         """One of what a scene file says, and the array that is its image."""
         table = object.__new__(cls)
-        table._given = _cloakroom.fit(cls._table, dict(keys))
+        table._given = _fixed(_cloakroom.fit(cls._table, dict(keys)))
         table._image = image
         return table
 
     def given(self) -> dict[str, Any]:
         """The keys that were given, with their values as a scene file writes them."""
-        return dict(self._given)
+        return dict(_plain(self._given))
 
     def replace(self, **keys: Any) -> Any:
         """The same table with some keys changed; ``None`` takes a key back to its default."""
@@ -199,7 +244,7 @@ def _key_doc(name: str, description: Mapping[str, Any]) -> str:
 
 
 def _key(name: str, description: Mapping[str, Any]) -> property:
-    default = description.get("default")
+    default = _fixed(description.get("default"))
     return property(lambda table: table._given.get(name, default), doc=description["description"])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import importlib.util
 import inspect
 import json
@@ -81,6 +82,30 @@ def test_keys_are_given_or_at_their_defaults() -> None:
     assert cloak != "a text" and cloakroom.FisheyeLens() != cloakroom.LuneburgLens()
     with pytest.raises(AttributeError, match="colour"):
         cloak.colour
+
+
+def test_lists_of_tables_do_not_change_either() -> None:
+    given = [1.0, 2.0, 3.0]
+    cloak = cloakroom.SquareCloak(position=given, imperfection={"error": 0.02})
+    given[0] = 99.0
+    changes = [
+        lambda: cloakroom.SquareCloak().position.__setitem__(1, 15.0),
+        lambda: cloakroom.Camera().target.append(1.0),
+        lambda: cloak.position.sort(),
+        lambda: cloak.imperfection.update(error=0.5),
+        lambda: cloakroom.Scene().camera.resolution.__setitem__(0, 40),
+    ]
+    for change in changes:
+        with pytest.raises(TypeError, match="tables do not change"):
+            change()
+    cloak.given()["position"][0] = 9.0
+    assert cloak.position == [1.0, 2.0, 3.0] and cloak.imperfection == {"error": 0.02}
+    assert cloakroom.SquareCloak().position == [0.0, 0.0, 0.0] and cloakroom.Scene().camera.resolution == [1024, 768]
+    # Copies are lists like any others.
+    for own in (copy.deepcopy(cloak.position), copy.copy(cloak.position), list(cloak.position), cloak.position[:]):
+        own[0] = 7.0
+    assert copy.deepcopy(cloak) == cloak == pickle.loads(pickle.dumps(cloak)) == cloak.replace()
+    assert np.array(cloak.position).sum() == 6.0 and repr(cloak.position) == "[1.0, 2.0, 3.0]"
 
 
 def test_numpy_and_complex_numbers_are_numbers() -> None:

@@ -119,7 +119,15 @@ impl Timeline {
         let keyframes = keyframes.map(|keyframes| keyframes.sweeps(frames)).unwrap_or_default();
         let all = || sweeps.iter().chain(keyframes.iter().map(|(sweep, _)| sweep));
         for (number, sweep) in all().enumerate() {
-            if all().take(number).any(|other| other.key == sweep.key) {
+            // An entry of a list, or the list that it is of, is the same key.
+            let is_of =
+                |a: &str, b: &str| b.strip_prefix(a).is_some_and(|rest| rest.starts_with('.'));
+            let same = |other: &Sweep| {
+                other.key == sweep.key
+                    || is_of(&other.key, &sweep.key)
+                    || is_of(&sweep.key, &other.key)
+            };
+            if all().take(number).any(same) {
                 return Err(SweepError::Twice(sweep.key.clone()).into());
             }
             let values = sweep.values.len();
@@ -161,11 +169,15 @@ impl Timeline {
 /// otherwise.
 fn way(text: &str) -> Result<Option<(String, Vec<Waypoint>)>, TimelineError> {
     let Some((key, values)) = text.split_once('=') else { return Ok(None) };
+    let refuse = |problem: String| TimelineError::Way { text: text.to_owned(), problem };
     let is_list = values.contains(',') && !values.contains('[');
+    let mut numbers = values.split("..").flat_map(|point| point.split(','));
+    if is_list && values.contains("..") && numbers.all(|part| part.trim().parse::<f64>().is_ok()) {
+        return Err(refuse("a vector stands in brackets".to_owned()));
+    }
     if !values.contains("..") || is_list || values.contains([':', '"', '\'']) {
         return Ok(None);
     }
-    let refuse = |problem: String| TimelineError::Way { text: text.to_owned(), problem };
     if key.trim().is_empty() {
         return Err(refuse("there is no key before the =".to_owned()));
     }
@@ -299,6 +311,8 @@ mod tests {
             (&["a=1,2", "b=1,2,3"], None, "b has 3 values, but the film has 2"),
             (&["a=1,2"], Some(5), "a has 2 values, but the film has 5"),
             (&["a=1,2", "a=3,4"], None, "a is swept twice"),
+            (&["a.1=1,2", "a=[1,2]..[3,4]"], Some(2), "a is swept twice"),
+            (&["a=-1,0,0..1,2,0"], Some(2), "a vector stands in brackets"),
             (&[], Some(2), "nothing changes"),
         ] {
             let message = timeline(texts, frames).expect_err("none").to_string();

@@ -175,6 +175,9 @@ impl Solids<'_> {
         let edge = (INK.faint(0.7), THIN);
         for z in ends {
             let rim: Vec<DVec3> = points.iter().map(|point| at(*point, z)).collect();
+            if metal && contour.closed {
+                self.items.push((rim.clone(), Paint::Face(METAL)));
+            }
             self.add_line(&rim, "edge", edge);
         }
         for corner in corners {
