@@ -158,15 +158,12 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
         )?;
     }
     let Estimate { seconds, walks, samples, .. } = estimate(prepared);
-    let (walks, samples, rest) = (
-        1e-6 * walks,
-        1e-6 * samples as f64,
-        match walks > samples as f64 {
-            true => "those between which others are interpolated among them",
-            false => "the others seen past every device or interpolated",
-        },
-    );
-    let of = if walks > samples { "for" } else { "of" };
+    let (walks, samples) = (1e-6 * walks, 1e-6 * samples as f64);
+    let (of, rest) = if walks > samples {
+        ("for", "those between which others are interpolated among them")
+    } else {
+        ("of", "the others seen past every device or interpolated")
+    };
     writeln!(
         text,
         "estimate     {} to render on {} threads; {walks:.2} million {of} {samples:.2} million rays traced, {rest}",

@@ -66,9 +66,8 @@ impl Reencode for Sorted {
 
 /// The module with its functions in the order of their names, and without these.
 pub fn by_name(module: &[u8]) -> Result<Vec<u8>, String> {
-    let sorted = order_of(module).map_err(|error| error.to_string())?;
+    let mut sorted = order_of(module).map_err(|error| error.to_string())?;
     let mut to = Module::new();
-    let mut sorted = sorted;
     sorted
         .parse_core_module(&mut to, Parser::new(0), module)
         .map_err(|error| format!("{error}"))?;

@@ -137,15 +137,12 @@ impl Joints<'_> {
             && a.along.dot(b.along) > 0.0;
         let [air_at_a, air_at_b] = [a.at, b.at].map(|at| self.is_air(at));
         // At borders fronts have kinks, and of few rays in graded media they are coarse.
-        let fits = if a.branch == b.branch {
-            are_across || !air_at_a || !air_at_b
+        let may_lean = if a.branch == b.branch {
+            !air_at_a || !air_at_b
         } else {
-            are_across
-                || air_at_a != air_at_b
-                || !self.is_isotropic(a.at)
-                || !self.is_isotropic(b.at)
+            air_at_a != air_at_b || !self.is_isotropic(a.at) || !self.is_isotropic(b.at)
         };
-        fits && self.are_near(a, b)
+        (are_across || may_lean) && self.are_near(a, b)
     }
 }
 
