@@ -102,6 +102,11 @@ def image_of(name: str, value: Any, encoding: Any = None) -> _cloakroom.Image:
         channels_first = array.ndim == 3 and array.shape[0] in (3, 4)
         mend = f"; {name}.transpose(1, 2, 0) has the colors last" if channels_first else ""
         raise ValueError(f"{name} has the shape {array.shape}; expected {_IMAGE}{mend}")
+    if array.dtype.kind == "f" and array.shape[2] == 4 and not ((array[..., 3] >= 0) & (array[..., 3] <= 1)).all():
+        alpha = array[..., 3]
+        raise ValueError(
+            f"{name} has alpha, its last channel, from {alpha.min():g} to {alpha.max():g}; expected 0 (clear) to 1 (opaque)"
+        )
     if array.dtype == np.uint8:
         if encoding != "linear":
             return _cloakroom.Image(_required(name, array, np.uint8), True)

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["Arrays"]
+__all__ = ["Arrays", "are_equal", "dataset"]
 
 
 class Arrays(dict[str, NDArray[Any]]):
-    """A dict of arrays that knows the names of their axes.
+    """A dict of arrays that knows the names of their axes; equal to a mapping of the same arrays.
 
     Parameters
     ----------
@@ -51,8 +51,20 @@ class Arrays(dict[str, NDArray[Any]]):
         """
         return dataset(self, self.axes, self.coordinates, {})
 
+    def __eq__(self, other: object) -> bool:
+        return are_equal(self, other) if isinstance(other, Mapping) else NotImplemented
+
     def __reduce__(self) -> tuple[Any, ...]:
         return Arrays, (dict(self), self.axes, self.coordinates)
+
+
+def are_equal(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    """Whether arrays of the same names are the same; what is no number is equal to itself."""
+    return one.keys() == other.keys() and all(_are_same(np.asarray(one[name]), np.asarray(other[name])) for name in one)
+
+
+def _are_same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    return np.array_equal(one, other, equal_nan=one.dtype.kind in "fc" and other.dtype.kind in "fc")
 
 
 def dataset(
@@ -71,5 +83,10 @@ def dataset(
     # The axes of tensors are counted.
     lengths = {axis: length for name in arrays for axis, length in zip(axes[name], arrays[name].shape)}
     along |= {axis: ((axis,), np.arange(lengths[axis])) for axis in ("row", "column") if axis in lengths}
+    # What tells places apart must have an order.
+    along = {
+        name: (dims, np.array([str(value) for value in array]) if array.dtype == object else array)
+        for name, (dims, array) in along.items()
+    }
     variables = {name: (axes[name], array) for name, array in arrays.items() if name not in along}
     return xarray.Dataset(variables, along, dict(attributes))

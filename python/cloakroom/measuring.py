@@ -118,8 +118,9 @@ def sweep(
     -------
     Arrays, a dict of str to array
         For every key its values, and for every figure its numbers, each of the shape of the grid of combinations:
-        (len of the first key's values, ...). The figures are those of ``cloakroom quality``, NaN where there is none.
-        Its ``to_xarray()`` has the keys as coordinates.
+        (len of the first key's values, ...). Values that are lists stand in an array of objects. The figures are those
+        of ``cloakroom quality``, NaN where there is none. Its ``to_xarray()`` has the keys as coordinates, lists as
+        texts.
 
     Raises
     ------
@@ -140,15 +141,15 @@ def sweep(
         wanted = None if reference is None else reference._native
         table = json.loads(_cloakroom.sweep(scene._native, list(values.items()), wanted, file, tell))
     shape = tuple(len(given) for given in values.values())
-    grids = np.meshgrid(*(np.asarray(given) for given in values.values()), indexing="ij") if values else []
-    columns: dict[str, NDArray[Any]] = dict(zip(values, grids))
-    along = {key: np.asarray(given) for key, given in values.items()}
+    along = {key: _array(given) for key, given in values.items()}
+    grids = np.meshgrid(*along.values(), indexing="ij") if along else []
+    columns: dict[str, NDArray[Any]] = dict(zip(along, grids))
     for column in table["columns"]:
         name = column["name"]
         figures = [row["figures"][name] for row in table["rows"]]
         columns[name] = np.array([np.nan if f is None else f for f in figures], dtype=np.float64).reshape(shape)
     axes = {name: tuple(values) for name in columns}
-    return Arrays(columns, axes, {key: values for key, values in along.items() if values.ndim == 1})
+    return Arrays(columns, axes, along)
 
 
 #: Nobody waits for more.
@@ -163,7 +164,18 @@ def _values(key: str, given: Any) -> list[Any]:
     values = given.tolist() if isinstance(given, np.ndarray) else list(given)
     if not values:
         raise ValueError(f"keys[{key!r}] is empty; expected one value at least")
+    if key.endswith(".image") and any(is_image_array(value) for value in values):
+        raise TypeError(f"keys[{key!r}] holds arrays; expected names of files, or measure each scene.replace(...) by itself")
     return values
+
+
+def _array(values: list[Any]) -> NDArray[Any]:
+    """Values along one axis; lists are objects in it."""
+    if not any(isinstance(value, (list, tuple, dict, np.ndarray)) for value in values):
+        return np.asarray(values)
+    array = np.empty(len(values), dtype=object)
+    array[:] = values
+    return array
 
 
 def flux(

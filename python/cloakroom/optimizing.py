@@ -71,6 +71,8 @@ class _Search:
         self.costs: list[float] = []
         #: How many residuals there are; none for an objective that is a number.
         self.residuals: int | None = None
+        #: Why the last values that make no scene make none.
+        self.refused: ValueError | None = None
 
     def values(self, point: NDArray[np.float64]) -> dict[str, float]:
         shares = zip(np.clip(point, 0, 1), self.bounds.items())
@@ -84,8 +86,8 @@ class _Search:
         try:
             scene = self.build(self.values(point))
             scene._native.build()
-        except ValueError:
-            pass
+        except ValueError as error:
+            self.refused = error
         else:
             random = (np.random.default_rng(self.seed),) if self.takes_random else ()
             try:
@@ -149,7 +151,7 @@ def optimize(
         0.8)}``. For a function, names of one's own.
     objective : callable
         What is to be least: a function of a scene that gives a number, or residuals (N,), of which half the sum of squares
-        is to be least. If it has a second parameter, it is given a `numpy.random.Generator`, the same
+        is to be least. If it has a second parameter without a default, it is given a `numpy.random.Generator`, the same
         one at each evaluation: rays that are drawn by it are the same, and differences are those of the scenes alone.
     start : mapping of str to float, optional
         Where to begin.
@@ -171,7 +173,8 @@ def optimize(
     Raises
     ------
     TypeError, ValueError
-        If a bound or the start makes no sense, no scene could be made at all, or the objective gives no finite numbers.
+        If a bound or the start makes no sense, no scene could be made at all or by the start alone (as of a key that
+        takes whole numbers), or the objective gives no finite numbers.
     ImportError
         If scipy is not installed.
 
@@ -220,6 +223,9 @@ def optimize(
     if not np.isfinite(min(search.costs, default=np.inf)):
         build(search.values(search.points[0] if search.points else np.full(len(bounds), 0.5)))._native.build()
         raise ValueError("none of the values tried makes a scene; mend the bounds in keys")
+    made = {tuple(point) for point, cost in zip(search.points, search.costs) if np.isfinite(cost)}
+    if search.refused is not None and begin is not None and made == {tuple(begin)}:
+        raise ValueError(f"of the values tried only the start makes a scene: {search.refused}") from None
     values = search.values(search.best())
     columns = {key: np.array([search.values(point)[key] for point in search.points]) for key in bounds}
     columns["value"] = np.array(search.costs)
@@ -253,18 +259,19 @@ def _run(solvers: Any, search: _Search, begin: NDArray[np.float64] | None, toler
 
 
 def _parameters(objective: Any) -> int:
-    """How many values a function takes."""
+    """How many values a function must be given."""
     if not callable(objective):
         raise TypeError(f"objective is a {type(objective).__name__}; expected a function of a scene")
     try:
         takes = inspect.signature(objective).parameters.values()
     except ValueError:
         return 1
-    count = sum(each.kind not in (each.KEYWORD_ONLY, each.VAR_KEYWORD) for each in takes)
-    if count == 0:
+    kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    places = [each for each in takes if each.kind in kinds]
+    if not places and all(each.kind != each.VAR_POSITIONAL for each in takes):
         raise TypeError("objective takes nothing; expected a function of a scene, and of a numpy.random.Generator if it "
                         "draws")  # fmt: skip
-    return count
+    return sum(each.default is each.empty for each in places)
 
 
 def _numbers_of(given: Any) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _cloakroom
-from .labelled import dataset
+from .labelled import are_equal, dataset
 
 if TYPE_CHECKING:
     import xarray
@@ -23,10 +23,10 @@ class Picture(Mapping[str, NDArray[Any]]):
 
     ``picture["time_of_flight"]`` and ``picture.time_of_flight`` are the same array; ``picture["horizontal.R"]`` has a
     dot in its name. Shapes are (height, width), and (height, width, 3) for Stokes images; colors and shares of power
-    are ``float32``, times ``float64``. The arrays are the renderer's own memory, not copies: what you change in them
-    is changed in what is saved.
+    are ``float32``, times ``float64``. The channels are the renderer's own memory, not copies: what you change in them
+    is changed in what is saved. `image`, `linear`, `horizontal` and `vertical` are put together from them, and copies.
 
-    In a notebook a picture shows itself.
+    Pictures are equal whose channels are. In a notebook a picture shows itself.
 
     Parameters
     ----------
@@ -143,6 +143,9 @@ class Picture(Mapping[str, NDArray[Any]]):
     def __dir__(self) -> Iterator[str]:
         yield from super().__dir__()
         yield from (name for name in self._channels if "." not in name)
+
+    def __eq__(self, other: object) -> bool:
+        return are_equal(self, other) if isinstance(other, Mapping) else NotImplemented
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -283,7 +283,11 @@ class Scene:
 
     @property
     def toml(self) -> str:
-        """The scene as a scene file writes it; pictures carry this."""
+        """The scene as a scene file writes it; pictures carry this.
+
+        An image that is an array is called ``array:WIDTHxHEIGHT`` in it, which cannot be loaded: save the image, and give
+        its path.
+        """
         return self._native.toml
 
     @property
@@ -424,9 +428,9 @@ class Scene:
                 None if wavefronts is None else _number("wavefronts", wavefronts),
                 _number("min_power", min_power),
                 None if space is None else _numbers("space", space, 2, "degrees"),
-                [_count("size", side) for side in size],
+                _size(size),
                 None if pulse is None else _number("pulse", pulse),
-                delay,
+                _text("delay", delay),
             )
         )
 
@@ -576,10 +580,12 @@ class Scene:
         keys = {key: value for key, value in keys.items() if value is not None}
         scene = self.replace(keys) if keys else self
         if gate is not None and not isinstance(gate, str):
-            start, end, step = (float(part) for part in gate)
+            start, end, step = _numbers("gate", gate, 3, "ns: the first and the last bin, and their length")
             gate = f"{start!r}..{end!r}:{step!r}"
         with told(progress, "rendering") as tell:
-            arrays, _ = _cloakroom.flight(scene._native, gate, float(pulse), delay, flash, tell)
+            arrays, _ = _cloakroom.flight(
+                scene._native, gate, _number("pulse", pulse), _text("delay", delay), _text("flash", flash), tell
+            )
         image = ("height", "width")
         axes: dict[str, tuple[str, ...]] = {}
         axes |= {name: (*image, "color") for name in ("before", "after", "untimed", "steady", "picture")}
@@ -633,6 +639,9 @@ class Scene:
         """
         if not isinstance(keys, Mapping) or not (keys or orbit is not None):
             raise TypeError(f"keys is {keys!r}; expected a mapping of keys to their values, one a frame")
+        for key, values in keys.items():
+            if isinstance(values, (str, bytes)) or not hasattr(values, "__len__"):
+                raise TypeError(f"keys[{key!r}] is a {type(values).__name__}; expected a list of values, one a frame")
         counts = {key: len(values) for key, values in keys.items()}
         turns = None if orbit is None else numbers("orbit", orbit, "angles (N,) in degrees")
         if turns is not None:
@@ -756,6 +765,19 @@ def _count(name: str, value: Any) -> int:
     if not 0 <= value < 2**32:
         raise ValueError(f"{name} is {value}; expected a whole number from 0 on that fits into 32 bits")
     return int(value)
+
+
+def _size(size: Any) -> list[int]:
+    array = np.asarray(size)
+    if array.shape != (2,) or array.dtype.kind not in "iu":
+        raise ValueError(f"size is {size!r}; expected width and height in pixels")
+    return [_count("size", side) for side in array]
+
+
+def _text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} is a {type(value).__name__}; expected a text")
+    return value
 
 
 def _table(name: str, given: TableLike | None) -> Table:

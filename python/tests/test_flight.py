@@ -46,6 +46,14 @@ def test_what_cannot_be_is_refused(words):
         scene().flight(**words)
 
 
+@pytest.mark.parametrize(
+    "words", [{"gate": 5}, {"gate": (1, 2)}, {"pulse": "1"}, {"delay": 3}, {"flash": None}],
+)
+def test_what_is_of_another_type_is_refused_by_its_name(words):
+    with pytest.raises((TypeError, ValueError), match=f"^{next(iter(words))} is "):
+        scene().flight(**words)
+
+
 def test_a_pulse_is_drawn_from_the_side():
     front = '<g class="pulse"'
     cloak = scene(SquareCloak())

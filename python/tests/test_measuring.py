@@ -80,12 +80,25 @@ def test_sweeps_are_grids(command, tmp_path) -> None:
         np.testing.assert_allclose(table[name].ravel(), expected, rtol=1e-6, atol=1e-9)
 
 
+def test_lists_are_places_along_an_axis(cloak: Scene) -> None:
+    positions = [[-80, 0, 0], [-90, 0, 0], [-95, 1, 0]]
+    table = sweep(cloak, {"camera.position": positions, "device.0.rotation": [0, 5]})
+    assert table["camera.position"].shape == (3, 2) and table["camera.position"][2, 1] == positions[2]
+    alone = sweep(cloak.replace({"camera.position": positions[2]}), {"device.0.rotation": [5]})
+    assert table["in_place_share"][2, 1] == alone["in_place_share"][0]
+    dataset = pytest.importorskip("xarray") and table.to_xarray()
+    assert dataset["in_place_share"].sel({"camera.position": "[-95, 1, 0]"}).shape == (2,)
+    assert table == sweep(cloak, {"camera.position": positions, "device.0.rotation": [0, 5]})
+    assert table != alone and table != {} and table != 3
+
+
 def test_bad_sweeps_are_told(cloak: Scene, tmp_path) -> None:
     for keys, error, message in [
         ([], TypeError, "keys is a list"),
         ({"device.0.rotation": 5}, TypeError, "keys['device.0.rotation'] is a int; expected a list of values"),
         ({"device.0.rotation": "0..5"}, TypeError, "is a str"),
         ({"device.0.rotation": []}, ValueError, "is empty"),
+        ({"photograph.image": [np.zeros((9, 8, 3))]}, TypeError, "keys['photograph.image'] holds arrays; expected names"),
         ({"device.0.rotaton": [1]}, ValueError, "unknown key `rotaton`"),
         ({"camera.samples": range(200_000)}, ValueError, "more than 100000 combinations"),
     ]:

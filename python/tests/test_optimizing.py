@@ -110,6 +110,21 @@ def test_values_without_a_scene_are_passed_over() -> None:
     assert np.isinf(found.history["value"]).any()
 
 
+def test_a_key_of_whole_numbers_is_no_place_to_go_down() -> None:
+    keys = {"camera.samples": (1, 9)}
+    with pytest.raises(ValueError, match="only the start makes a scene: .*it must be a whole number"):
+        optimize(Scene(), keys, lambda scene: float(scene.camera.samples), start={"camera.samples": 3})
+
+
+def test_parameters_with_a_default_keep_it() -> None:
+    def objective(scene: Scene, wanted: float = 3.0) -> float:
+        return (scene.devices[0].rotation - wanted) ** 2
+
+    scene = Scene(devices=cloakroom.SquareCloak())
+    found = optimize(scene, {"device.0.rotation": (0, 10)}, objective, start={"device.0.rotation": 8}, tolerance=1e-6)
+    assert abs(found.values["device.0.rotation"] - 3) < 1e-4
+
+
 @pytest.mark.parametrize(
     ("keys", "more", "message"),
     [
