@@ -320,6 +320,7 @@ fn faults_are_told_in_the_words_that_were_typed() {
         (animate(&["--orbit", "0..20:5"]), "--orbit 0..20:5: it takes no step"),
         (vec!["check", "scene.toml", "--photo", "no.png"], "error: --photo no.png: there is no"),
         (vec!["check", "gallery/prims"], "did you mean `gallery/prisms`?"),
+        (vec!["check", "fig6c.toml"], "did you mean `paper/fig6c`?"),
         (check("camera.resolution=0x0"), "the first number of resolution is 0"),
         (
             check("camera.resolution=160x"),

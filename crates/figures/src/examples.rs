@@ -65,12 +65,15 @@ pub fn named(name: &str) -> Option<Example> {
 }
 
 /// The end of a message about a scene of a name that is neither a file nor an example: what may be
-/// meant.
+/// meant. The name alone, without its folder, tells enough.
 #[must_use]
 pub fn meant_by(name: &str) -> String {
     let all = all();
     let known = all.iter().filter_map(|example| example.path.strip_suffix(".toml"));
-    nearest(name, known).map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default()
+    let bare = name.trim_end_matches(".toml");
+    let is_meant = |path: &&str| path.rsplit_once('/').is_some_and(|(_, last)| last == bare);
+    let meant = known.clone().find(is_meant).or_else(|| nearest(name, known));
+    meant.map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default()
 }
 
 /// All example scenes: those of the paper, those of the gallery, the others.

@@ -88,6 +88,10 @@ pub enum DiagramError {
 const WINDOW: &str = "the width or height of the window";
 const LEAST_WINDOW: f64 = 1e-3;
 
+/// What the distance of wavefronts is called in messages, and how many there may be along a ray.
+const WAVEFRONTS: &str = "the distance of wavefronts";
+const MOST_WAVEFRONTS: f64 = 4000.0;
+
 /// More rays than this are no diagram.
 const MOST_RAYS: u32 = 2000;
 
@@ -147,6 +151,13 @@ impl RayDiagram {
                 Ok(tree)
             })
             .collect::<Result<_, _>>()?;
+        if let Some(value) = settings.wavefronts
+            && value * MOST_WAVEFRONTS < rays::longest(trees.iter().flatten())
+        {
+            let (name, allowed) =
+                (WAVEFRONTS, "a 4000th of the longest optical path of a ray, at least");
+            return Err(DiagramError::Setting { name, value, allowed });
+        }
         Ok(Self { settings: settings.clone(), assembly, scenery, trees })
     }
 
@@ -254,7 +265,7 @@ fn check(settings: &DiagramSettings) -> Result<(), DiagramError> {
     }
     for (name, value) in [
         ("the width of the bundle", settings.width),
-        ("the distance of wavefronts", settings.wavefronts),
+        (WAVEFRONTS, settings.wavefronts),
         ("the least power", Some(settings.min_power)),
     ] {
         if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {

@@ -146,6 +146,12 @@ impl Joints<'_> {
     }
 }
 
+/// The longest optical path of rays, cm.
+pub(super) fn longest<'a>(lines: impl Iterator<Item = &'a Line>) -> f64 {
+    let ends = lines.filter_map(|line| line.points.last());
+    ends.map(|point| point.optical_path).fold(0.0, f64::max)
+}
+
 /// Lines in space through the points of equal optical path of neighbouring rays: of each the
 /// strongest branch there. They are `distance` apart in optical path, cm.
 pub(super) fn wavefronts(
@@ -155,10 +161,7 @@ pub(super) fn wavefronts(
 ) -> Vec<Vec<DVec3>> {
     /// Weaker branches have no wavefronts of their own.
     const LEAST_POWER: f64 = 0.2;
-    const MOST: u32 = 4000;
-    let longest = trees.iter().flatten().filter_map(|line| line.points.last());
-    let longest = longest.map(|point| point.optical_path).fold(0.0, f64::max);
-    let count = ((longest / distance) as u32).min(MOST);
+    let count = (longest(trees.iter().flatten()) / distance) as u32;
     let mut fronts = Vec::new();
     for number in 1..=count {
         let path = f64::from(number) * distance;

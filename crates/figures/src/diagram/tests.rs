@@ -69,6 +69,14 @@ fn a_perfect_cloak_leaves_wavefronts_plane() {
 }
 
 #[test]
+fn wavefronts_that_no_one_could_tell_apart_are_refused() {
+    let settings =
+        DiagramSettings { wavefronts: Some(0.01), rays: 3, ..DiagramSettings::default() };
+    let refused = drawn("[[device]]\nkind = \"square-cloak\"", &settings).expect_err("too many");
+    assert!(refused.to_string().starts_with("the distance of wavefronts is 0.01; "), "{refused}");
+}
+
+#[test]
 fn the_lens_of_luneburg_has_its_focus_on_its_far_side() {
     let settings = DiagramSettings { rays: 9, width: Some(18.0), ..DiagramSettings::default() };
     let scene = scene("[[device]]\nkind = \"luneburg-lens\"");

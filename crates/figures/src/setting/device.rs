@@ -159,13 +159,13 @@ impl Sketch<'_> {
         let middle = label.at;
         let points = corners.iter().flat_map(|corner| [*corner, corner.midpoint(middle)]);
         let points: Vec<DVec2> = points.chain([middle]).collect();
-        let around = |other: &Subject<'_>| {
-            other.bounds().zip(self.subject.bounds()).is_some_and(|([from, to], [low, high])| {
-                from.cmple(low).all() && high.cmple(to).all()
-            })
-        };
         let own = (way > 0.0).then_some(self.subject);
-        let devices = others.devices.iter().filter(|other| !around(other)).copied().chain(own);
+        let devices = others
+            .devices
+            .iter()
+            .filter(|other| !self.subject.is_inside(other))
+            .copied()
+            .chain(own);
         let on_sheet = |at: &DVec2| at.min_element() >= 0.0 && at.cmple(self.drawing.size).all();
         corners.iter().all(on_sheet)
             && labels.flat_map(|class| self.drawing.of_class(class)).all(is_apart)

@@ -2,7 +2,7 @@
 
 use super::super::drawing::Drawing;
 use super::stage::{AXES, DISTANCES, EYE, Stage};
-use super::subject::{Subject, bounds, turn};
+use super::subject::{Subject, bounds, holds, turn};
 use super::view::{View, corners};
 use super::{BAR, GRAY, MARGIN, TEXT, THIN};
 use glam::DVec2;
@@ -222,7 +222,7 @@ fn groups(subjects: &[Subject<'_>]) -> Vec<Group> {
         groups.push(own);
     }
     for own in boxed(true) {
-        if let Some(around) = groups.iter_mut().find(|group| group.holds(&own)) {
+        if let Some(around) = groups.iter_mut().find(|group| holds(group.bounds, own.bounds)) {
             *around = around.clone().with(own);
         }
     }
@@ -233,11 +233,6 @@ impl Group {
     fn touches(&self, other: &Self) -> bool {
         let ([low, high], [from, to]) = (self.bounds, other.bounds);
         low.max(from).cmplt(high.min(to)).all()
-    }
-
-    fn holds(&self, other: &Self) -> bool {
-        let ([low, high], [from, to]) = (self.bounds, other.bounds);
-        low.cmple(from).all() && to.cmple(high).all()
     }
 
     fn with(mut self, other: Self) -> Self {

@@ -72,22 +72,22 @@ impl<'s> Subject<'s> {
     /// Whether it lies within another device as they are drawn, as a body, of two of one size the one that
     /// `stands_behind`, or hidden by an opaque one, or one of metal, that it stands behind.
     pub fn is_within(&self, other: &Self, stands_behind: bool) -> bool {
-        let (Some([low, high]), Some([from, to])) = (self.bounds(), other.bounds()) else {
-            return false;
-        };
-        let alike = [low, high] == [from, to];
+        let (Some(own), Some(others)) = (self.bounds(), other.bounds()) else { return false };
+        let alike = own == others;
         let is_inner = self.section.body.is_some() && (stands_behind || !alike);
         let is_hidden = stands_behind && (other.is_opaque() || !other.section.metal.is_empty());
-        (is_inner || is_hidden) && from.cmple(low).all() && high.cmple(to).all()
+        (is_inner || is_hidden) && holds(others, own)
+    }
+
+    /// Whether its bounds are within those of another one.
+    pub fn is_inside(&self, other: &Self) -> bool {
+        other.bounds().zip(self.bounds()).is_some_and(|(others, own)| holds(others, own))
     }
 
     /// Whether another device leaves no room on the sheet for its dimensions: it is beside it or reaches into it,
     /// and is not within it or around it.
     pub fn is_crowded_by(&self, other: &Self, view: &View) -> bool {
         let (Some(own), Some(others)) = (self.bounds(), other.bounds()) else { return false };
-        let holds = |[low, high]: [DVec2; 2], [from, to]: [DVec2; 2]| {
-            low.cmple(from).all() && to.cmple(high).all()
-        };
         let on_sheet = |ends: [DVec2; 2]| bounds(ends.map(|end| view.place(end)));
         let (Some([low, high]), Some([from, to])) = (on_sheet(own), on_sheet(others)) else {
             return false;
@@ -130,6 +130,11 @@ pub(super) fn sides(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
 /// Twice the area within a closed contour, positive where it runs from x to y.
 pub(super) fn turn(points: &[DVec2]) -> f64 {
     sides(points).map(|(a, b)| a.perp_dot(b)).sum()
+}
+
+/// Whether a box, by its least and greatest corner, holds another one.
+pub(super) fn holds([low, high]: [DVec2; 2], [from, to]: [DVec2; 2]) -> bool {
+    low.cmple(from).all() && to.cmple(high).all()
 }
 
 /// Least and greatest x and y.

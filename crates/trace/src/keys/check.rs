@@ -316,7 +316,14 @@ impl Key {
             text.split(',').map(number).collect()
         });
         let list = numbers.map(Value::List).filter(|list| self.check(list).is_ok());
-        let hint = list.map(|list| format!(", in brackets: {list}")).unwrap_or_default();
+        let hint = match list {
+            Some(list) => format!(", in brackets: {list}"),
+            None if value.as_text().is_some_and(is_range) => {
+                ", one alone; a range is for --sweep, of `cloakroom quality` and `animate`"
+                    .to_owned()
+            }
+            None => String::new(),
+        };
         format!("{} is {value}; it must be {}{hint}", self.name, self.describe())
     }
 
@@ -407,6 +414,12 @@ fn words(options: &[&str]) -> String {
 fn key_names(keys: &[Key]) -> String {
     let names: Vec<_> = keys.iter().map(|key| key.name).collect();
     format!("the key{} {}", if names.len() == 1 { "" } else { "s" }, names.join(", "))
+}
+
+/// Whether a text is two numbers with dots between them, and perhaps a step: `0..20:5`.
+fn is_range(text: &str) -> bool {
+    let is_number = |part: &str| part.trim().parse::<f64>().is_ok();
+    text.split_once("..").is_some_and(|(from, to)| is_number(from) && to.split(':').all(is_number))
 }
 
 fn in_brackets(unit: &str) -> String {

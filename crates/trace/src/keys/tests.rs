@@ -198,6 +198,16 @@ fn a_refusal_names_quantity_value_unit_and_what_is_allowed() {
     assert_eq!(refusal("side", -3.0), "side is -3 cm; it must be from 1e-6 to 1000000");
     assert_eq!(refusal("side", 1e308), "side is 1e308 cm; it must be from 1e-6 to 1000000");
     assert_eq!(refusal("length", 0.0), "length is 0 cm; it must be above 0");
+    for range in ["0..20:5", "-1.5..2"] {
+        let told = refusal("kappa", range);
+        assert!(
+            told.ends_with(
+                "one alone; a range is for --sweep, of `cloakroom quality` and `animate`"
+            ),
+            "{told}"
+        );
+    }
+    assert!(!refusal("kappa", "../20").contains("--sweep"));
     assert_eq!(refusal("kappa", 1.0), "kappa is 1; it must be above 0 and below 1");
     assert_eq!(refusal("samples", 0_i64), "samples is 0; it must be from 1 to 65536");
     assert_eq!(refusal("samples", 1.5), "samples is 1.5; it must be a whole number");
