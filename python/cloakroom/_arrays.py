@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from . import _cloakroom
 
-__all__ = ["common_length", "image_of", "is_image_array", "numbers", "tensors", "vectors"]
+__all__ = ["check_listed", "common_length", "image_of", "is_image_array", "numbers", "tensors", "vectors"]
 
 
 def numbers(name: str, value: Any, expected: str, *, allow_complex: bool = False) -> NDArray[Any]:
@@ -57,6 +57,12 @@ def tensors(name: str, value: Any) -> NDArray[np.complex128]:
     if array.ndim != 3 or array.shape[1:] != (3, 3):
         raise ValueError(f"{name} has the shape {array.shape}; expected {expected}")
     return array
+
+
+def check_listed(key: str, given: Any, expected: str) -> None:
+    """Refuses what is given for a key where a list of its values is expected."""
+    if isinstance(given, (str, bytes)) or not hasattr(given, "__len__"):
+        raise TypeError(f"keys[{key!r}] is a {type(given).__name__}; expected {expected}")
 
 
 def common_length(lengths: dict[str, int]) -> int:

@@ -54,6 +54,10 @@ class Arrays(dict[str, NDArray[Any]]):
     def __eq__(self, other: object) -> bool:
         return are_equal(self, other) if isinstance(other, Mapping) else NotImplemented
 
+    # That of dict would compare by itself.
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
     def __reduce__(self) -> tuple[Any, ...]:
         return Arrays, (dict(self), self.axes, self.coordinates)
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
-from ._arrays import image_of, is_image_array, numbers
+from ._arrays import check_listed, image_of, is_image_array, numbers
 from ._progress import Progress, told
 from .labelled import Arrays
 from .pictures import Picture
@@ -157,8 +157,7 @@ _MOST_VALUES = 1_000_000
 
 
 def _values(key: str, given: Any) -> list[Any]:
-    if isinstance(given, (str, bytes)) or not hasattr(given, "__len__"):
-        raise TypeError(f"keys[{key!r}] is a {type(given).__name__}; expected a list of values")
+    check_listed(key, given, "a list of values")
     if len(given) > _MOST_VALUES:
         raise ValueError(f"keys[{key!r}] has {len(given)} values; at most {_MOST_VALUES} are taken")
     values = given.tolist() if isinstance(given, np.ndarray) else list(given)

@@ -225,7 +225,7 @@ def optimize(
         raise ValueError("none of the values tried makes a scene; mend the bounds in keys")
     made = {tuple(point) for point, cost in zip(search.points, search.costs) if np.isfinite(cost)}
     if search.refused is not None and begin is not None and made == {tuple(begin)}:
-        raise ValueError(f"of the values tried only the start makes a scene: {search.refused}") from None
+        raise ValueError(f"of the values tried only the start makes a scene: {search.refused}")
     values = search.values(search.best())
     columns = {key: np.array([search.values(point)[key] for point in search.points]) for key in bounds}
     columns["value"] = np.array(search.costs)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
-from ._arrays import image_of, is_image_array, numbers
+from ._arrays import check_listed, image_of, is_image_array, numbers
 from ._progress import Progress, told
 from .drawings import Drawing
 from .labelled import Arrays
@@ -428,7 +428,7 @@ class Scene:
                 None if wavefronts is None else _number("wavefronts", wavefronts),
                 _number("min_power", min_power),
                 None if space is None else _numbers("space", space, 2, "degrees"),
-                _size(size),
+                _pixels("size", size, 2, "width and height"),
                 None if pulse is None else _number("pulse", pulse),
                 _text("delay", delay),
             )
@@ -511,7 +511,7 @@ class Scene:
         shown = scene._native.map
         if image_only and "map" in shown:
             raise ValueError(f"image_only leaves no channel `{shown['map']}` for picture.map to show")
-        place = None if tile is None else _tile(tile)
+        place = None if tile is None else _pixels("tile", tile, 4, "left, top, width and height")
         with told(progress, "rendering") as tell:
             channels, metadata, (endless, lost) = _cloakroom.render(scene._native, image_only, place, tell)
         rarities = {"endless": endless, "lost": lost}
@@ -640,8 +640,7 @@ class Scene:
         if not isinstance(keys, Mapping) or not (keys or orbit is not None):
             raise TypeError(f"keys is {keys!r}; expected a mapping of keys to their values, one a frame")
         for key, values in keys.items():
-            if isinstance(values, (str, bytes)) or not hasattr(values, "__len__"):
-                raise TypeError(f"keys[{key!r}] is a {type(values).__name__}; expected a list of values, one a frame")
+            check_listed(key, values, "a list of values, one a frame")
         counts = {key: len(values) for key, values in keys.items()}
         turns = None if orbit is None else numbers("orbit", orbit, "angles (N,) in degrees")
         if turns is not None:
@@ -738,10 +737,10 @@ def _rebuild(
     return scene
 
 
-def _tile(tile: Any) -> list[int]:
-    array = np.asarray(tile)
-    if array.shape != (4,) or array.dtype.kind not in "iu" or not ((array >= 0) & (array < 2**32)).all():
-        raise ValueError(f"tile is {tile!r}; expected left, top, width and height in pixels")
+def _pixels(name: str, given: Any, count: int, expected: str) -> list[int]:
+    array = np.asarray(given)
+    if array.shape != (count,) or array.dtype.kind not in "iu" or not ((array >= 0) & (array < 2**32)).all():
+        raise ValueError(f"{name} is {given!r}; expected {expected} in pixels")
     return [int(side) for side in array]
 
 
@@ -765,13 +764,6 @@ def _count(name: str, value: Any) -> int:
     if not 0 <= value < 2**32:
         raise ValueError(f"{name} is {value}; expected a whole number from 0 on that fits into 32 bits")
     return int(value)
-
-
-def _size(size: Any) -> list[int]:
-    array = np.asarray(size)
-    if array.shape != (2,) or array.dtype.kind not in "iu":
-        raise ValueError(f"size is {size!r}; expected width and height in pixels")
-    return [_count("size", side) for side in array]
 
 
 def _text(name: str, value: Any) -> str:

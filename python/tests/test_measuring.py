@@ -88,7 +88,10 @@ def test_lists_are_places_along_an_axis(cloak: Scene) -> None:
     assert table["in_place_share"][2, 1] == alone["in_place_share"][0]
     dataset = pytest.importorskip("xarray") and table.to_xarray()
     assert dataset["in_place_share"].sel({"camera.position": "[-95, 1, 0]"}).shape == (2,)
-    assert table == sweep(cloak, {"camera.position": positions, "device.0.rotation": [0, 5]})
+    again = sweep(cloak, {"camera.position": positions, "device.0.rotation": [0, 5]})
+    assert table == again and not table != again
+    again["in_place_share"][0, 0] += 1
+    assert table != again and not table == again
     assert table != alone and table != {} and table != 3
 
 
