@@ -1,5 +1,5 @@
-//! The figures of the paper, rendered and drawn. Panels of a figure that differ in nothing but the
-//! polarizer, or in that one of them shows a map, share their rays, which are traced once.
+//! The figures of the paper, rendered and drawn. Panels that differ in nothing but the polarizer, or
+//! in that one of them shows a map of their figure, share their rays, which are traced once.
 
 use crate::panels::{PanelMaker, merge_metadata};
 use crate::paper::{PANELS, Panel, Shows, TITLES};
@@ -30,21 +30,31 @@ pub fn make<E>(chosen: &[&'static Panel], maker: &mut PanelMaker<'_, E>) -> Resu
 where
     E: From<SceneFileError> + From<IllustrationError> + From<OutputError>,
 {
-    let figures = chosen.chunk_by(|one, next| one.figure == next.figure);
-    figures.into_iter().try_for_each(|panels| make_figure(panels, maker))
+    let mut views = Views::new(chosen, maker)?;
+    let mut first = 0;
+    for panels in chosen.chunk_by(|one, next| one.figure == next.figure) {
+        make_figure(panels, first, &mut views, maker)?;
+        first += panels.len();
+    }
+    Ok(())
 }
 
-/// Makes the chosen panels of one figure, and its sheet if all of them are chosen.
-fn make_figure<E>(chosen: &[&'static Panel], maker: &mut PanelMaker<'_, E>) -> Result<(), E>
+/// Makes the chosen panels of one figure, the first of which has that place among all, and its sheet
+/// if all of them are chosen.
+fn make_figure<E>(
+    chosen: &[&'static Panel],
+    first: usize,
+    views: &mut Views,
+    maker: &mut PanelMaker<'_, E>,
+) -> Result<(), E>
 where
     E: From<SceneFileError> + From<IllustrationError> + From<OutputError>,
 {
     let mut on_sheet = Vec::new();
     let mut metadata: Vec<(String, String)> = Vec::new();
-    let mut views = Views::new(chosen, maker)?;
-    for (index, panel) in chosen.iter().enumerate() {
+    for (index, panel) in (first..).zip(chosen) {
         let (image, bar, of_panel) = match panel.shows {
-            Shows::Picture => rendered(&mut views, index, maker)?,
+            Shows::Picture => rendered(views, index, maker)?,
             Shows::Setting => drawn(panel, &views.subjects[index].loaded, maker)?,
         };
         merge_metadata(&mut metadata, &of_panel);
@@ -106,8 +116,7 @@ struct Subject {
     view: Option<Loaded>,
 }
 
-/// The panels of a figure, and the pictures of the views that they share, as far as they have been
-/// needed.
+/// The chosen panels, and the pictures of the views that they share, as long as they are needed.
 struct Views {
     subjects: Vec<Subject>,
     /// By the text of their scenes.
@@ -153,20 +162,22 @@ impl Views {
             Ok::<_, SceneFileError>(Subject { panel, loaded: load(panel, &[])?, view: None })
         };
         let mut subjects = panels.iter().map(subject).collect::<Result<Vec<_>, _>>()?;
-        let map = subjects.iter().find_map(|subject| subject.loaded.scene.picture.map.name());
-        let map_override = map.map(|map| format!("picture.map={map}"));
-        let overrides: Vec<&str> =
-            std::iter::once("camera.polarizer=none").chain(map_override.as_deref()).collect();
-        for Subject { panel, loaded, view } in &mut subjects {
-            let (own_map, polarizer) =
-                (loaded.scene.picture.map.name(), loaded.scene.camera.polarizer);
-            let shares = match polarizer {
-                Polarizer::None => own_map.is_none() || own_map == map,
-                Polarizer::Horizontal | Polarizer::Vertical => map.is_none(),
-                Polarizer::Angle(_) => false,
-            };
-            if panel.shows == Shows::Picture && shares {
-                *view = Some(load(panel, &overrides)?);
+        for figure in subjects.chunk_by_mut(|one, next| one.panel.figure == next.panel.figure) {
+            let map = figure.iter().find_map(|subject| subject.loaded.scene.picture.map.name());
+            let map_override = map.map(|map| format!("picture.map={map}"));
+            let overrides: Vec<&str> =
+                std::iter::once("camera.polarizer=none").chain(map_override.as_deref()).collect();
+            for Subject { panel, loaded, view } in figure {
+                let (own_map, polarizer) =
+                    (loaded.scene.picture.map.name(), loaded.scene.camera.polarizer);
+                let shares = match polarizer {
+                    Polarizer::None => own_map.is_none() || own_map == map,
+                    Polarizer::Horizontal | Polarizer::Vertical => map.is_none(),
+                    Polarizer::Angle(_) => false,
+                };
+                if panel.shows == Shows::Picture && shares {
+                    *view = Some(load(panel, &overrides)?);
+                }
             }
         }
         Ok(Self { subjects, pictures: HashMap::new() })
@@ -191,6 +202,10 @@ impl Views {
                 self.pictures.insert(text.clone(), render(view, wanted)?);
             }
             if let Some(picture) = self.pictures.get(text).and_then(|view| subject.of_view(view)) {
+                let mut later = self.subjects[index + 1..].iter();
+                if later.all(|later| later.view_text() != Some(text)) {
+                    self.pictures.remove(text);
+                }
                 return Ok(picture);
             }
         }

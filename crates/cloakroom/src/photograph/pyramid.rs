@@ -348,7 +348,7 @@ struct Taps<const TAPS: usize, const LANES: usize> {
 
 impl<const TAPS: usize, const LANES: usize> Taps<TAPS, LANES> {
     /// The average over `width` texels around `position`, both in texels from the edge.
-    #[inline]
+    #[inline(always)]
     fn new(position: f64, width: f32) -> Self {
         // Texel i has its middle at i + 1/2 and reaches one texel further on both sides.
         let middle = position - 0.5;
@@ -356,16 +356,19 @@ impl<const TAPS: usize, const LANES: usize> Taps<TAPS, LANES> {
         let first = floor(middle - f64::from(half));
         let offset = (first as f64 - middle) as f32;
         let scale = 1.0 / width;
-        let lanes = std::array::from_fn(|tap| {
+        let mut lanes = [0.0; LANES];
+        for (tap, lane) in lanes.iter_mut().enumerate() {
             let distance = offset + tap as f32;
-            (tent_integral(distance + half) - tent_integral(distance - half)) * scale
-        });
+            *lane = (tent_integral(distance + half) - tent_integral(distance - half)) * scale;
+        }
         Self { first, lanes }
     }
 
     #[inline]
     fn weights(&self) -> [f32; TAPS] {
-        std::array::from_fn(|tap| self.lanes[tap])
+        let mut weights = [0.0; TAPS];
+        weights.copy_from_slice(&self.lanes[..TAPS]);
+        weights
     }
 
     /// The first texel's index if all lie within `length` texels.

@@ -12,7 +12,7 @@ use crate::transformation::{ConformalMap, root_in_bracket};
 pub struct FloorCurve {
     map: ConformalMap,
     back: MetalBack,
-    /// Between neighbours the slope of the curve is monotone: the ends and the inflection points.
+    /// From end to end; between neighbours the curve bends one way.
     knots: Vec<Knot>,
     /// The lowest and the highest y of the metal's bounding box.
     box_y: [f64; 2],
@@ -63,16 +63,24 @@ struct Knot {
     tangent: Complex64,
 }
 
+/// Pieces of a floor between two of its inflection points, or one and an end: a ray is known to miss nearly
+/// all of them by their ends alone, and from those of the others its root is near.
+const PIECES: usize = 32;
+
 impl FloorCurve {
     /// The metal between physical `x_min` and `x_max`.
     #[must_use]
     pub fn new(map: ConformalMap, back: MetalBack, x_min: f64, x_max: f64) -> Self {
         let (start, end) = (map.profile_parameter(x_min), map.profile_parameter(x_max));
-        let knots: Vec<Knot> = std::iter::once(start)
-            .chain(map.profile_inflections(start, end))
-            .chain(std::iter::once(end))
-            .map(|parameter| knot(&map, parameter))
-            .collect();
+        let mut bends = vec![start];
+        bends.extend(map.profile_inflections(start, end));
+        bends.push(end);
+        let between = |pair: &[f64]| {
+            let (from, to) = (pair[0], pair[1]);
+            (0..PIECES).map(move |k| from + (to - from) * k as f64 / PIECES as f64)
+        };
+        let parameters = bends.windows(2).flat_map(between).chain([end]);
+        let knots: Vec<Knot> = parameters.map(|parameter| knot(&map, parameter)).collect();
         let peak = map.peak();
         let bottom = match back {
             MetalBack::MirrorImage => -peak,
@@ -236,7 +244,8 @@ impl FloorCurve {
     ///
     /// On the ray, F(X) = cross(f(X) - origin, direction) vanishes. Its slope vanishes where the
     /// curve is parallel to the ray: at most once between two knots. So F is monotone on known
-    /// intervals, and no root can be missed.
+    /// intervals, and no root can be missed. Between two knots the curve lies in the triangle that its
+    /// tangents there make with the chord: where all three corners are on one side of the ray, so is it.
     fn first_on_curve(&self, ray: Ray) -> Option<FloorHit> {
         let Ray { origin, direction, t_min, leaving } = ray;
         let along = Complex64::new(direction.x, direction.y);
@@ -245,11 +254,8 @@ impl FloorCurve {
         let height = |knot: &Knot| cross(knot.point - offset);
         let mut best: Option<FloorHit> = None;
         let mut consider = |a: &Knot, b: &Knot| {
-            let (at_a, at_b) = (height(a), height(b));
-            if at_a * at_b > 0.0 {
-                return;
-            }
-            let root = root_in_bracket((a.parameter, at_a), (b.parameter, at_b), |x| {
+            let ends = ((a.parameter, height(a)), (b.parameter, height(b)));
+            let root = root_in_bracket(ends.0, ends.1, |x| {
                 let here = knot(&self.map, x);
                 (height(&here), cross(here.tangent))
             });
@@ -263,20 +269,36 @@ impl FloorCurve {
                 best = Some(FloorHit { t, normal });
             }
         };
-        for pair in self.knots.windows(2) {
-            let [a, b] = pair else { continue };
-            let (slope_a, slope_b) = (cross(a.tangent), cross(b.tangent));
-            if slope_a * slope_b < 0.0 {
-                let ends = ((a.parameter, slope_a), (b.parameter, slope_b));
-                let turning = root_in_bracket(ends.0, ends.1, |x| {
-                    let jet = self.map.profile(x);
-                    (cross(jet.f1), cross(jet.f2))
-                });
-                let turning = knot(&self.map, turning);
-                consider(a, &turning);
-                consider(&turning, b);
-            } else {
-                consider(a, b);
+        // Between knots from which on F only rises, or only falls.
+        let mut cross_once = |knots: &[Knot]| {
+            let [first, .., last] = knots else { return };
+            let start = height(first);
+            if start * height(last) <= 0.0 {
+                let beyond = knots.partition_point(|knot| height(knot) * start > 0.0).max(1);
+                consider(&knots[beyond - 1], &knots[beyond]);
+            }
+        };
+        for bend in 0..self.knots.len() / PIECES {
+            let knots = &self.knots[bend * PIECES..=(bend + 1) * PIECES];
+            let rises = |knot: &Knot| cross(knot.tangent) > 0.0;
+            let turned = knots.partition_point(|knot| rises(knot) == rises(&knots[0]));
+            let (before, after) = knots.split_at(turned);
+            cross_once(before);
+            if let ([.., a], [b, ..]) = (before, after) {
+                let (slope, twist) = (cross(a.tangent), |v: Complex64| (v.conj() * b.tangent).im);
+                let corner = height(a) + slope * twist(b.point - a.point) / twist(a.tangent);
+                let misses = height(a) * height(b) > 0.0 && height(a) * corner > 0.0;
+                if !misses {
+                    let ends = ((a.parameter, slope), (b.parameter, cross(b.tangent)));
+                    let turning = root_in_bracket(ends.0, ends.1, |x| {
+                        let jet = self.map.profile(x);
+                        (cross(jet.f1), cross(jet.f2))
+                    });
+                    let turning = knot(&self.map, turning);
+                    cross_once(&[*a, turning]);
+                    cross_once(&[turning, *b]);
+                }
+                cross_once(after);
             }
         }
         best

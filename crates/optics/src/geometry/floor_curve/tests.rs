@@ -27,7 +27,7 @@ fn by_walking(map: &ConformalMap, reach: f64, origin: DVec2, direction: DVec2) -
 fn is_met_from_all_sides() {
     let map = map(10.02, 4.25);
     let curve = FloorCurve::new(map.clone(), MetalBack::MirrorImage, -25.0, 25.0);
-    assert_eq!(curve.knots.len(), 4);
+    assert_eq!(curve.knots.len(), 3 * PIECES + 1, "it bends three ways");
     let hit = curve.first_hit(DVec2::new(0.0, 30.0), DVec2::new(0.0, -2.0), 0.0).expect("a hit");
     assert!((hit.t - 0.5 * (30.0 - 4.25)).abs() < 1e-13);
     assert!((hit.normal - DVec2::Y).length() < 1e-13);
@@ -81,5 +81,36 @@ proptest! {
                 prop_assert!(next.t * length > 1e-9 || height < 1e-9);
             }
         }
+    }
+
+    /// A ray that all but grazes the floor where that bends away from it enters the metal if it is
+    /// that much too low, and passes if it is too high.
+    #[test]
+    fn grazing_rays_are_told_apart(
+        w in 6.0_f64..12.0, ratio in 0.05_f64..0.88, place in -1.0_f64..1.0, backwards: bool,
+        depth in -9.0_f64..-5.0,
+    ) {
+        let map = map(w, ratio * w);
+        let curve = FloorCurve::new(map.clone(), MetalBack::MirrorImage, -25.0, 25.0);
+        prop_assert_eq!(curve.knots.len(), 3 * PIECES + 1);
+        let [from, to] = [&curve.knots[PIECES], &curve.knots[2 * PIECES]];
+        let (middle, half) = (0.5 * (from.parameter + to.parameter), 0.5 * (to.parameter - from.parameter));
+        let jet = map.profile(middle + 0.7 * place * half);
+        let point = DVec2::new(jet.f.re, jet.f.im);
+        let mut along = DVec2::new(jet.f1.re, jet.f1.im).normalize();
+        let normal = along.perp();
+        if backwards {
+            along = -along;
+        }
+        let depth = 10.0_f64.powf(depth);
+        let bend = (jet.f1.conj() * jet.f2).im.abs() / jet.f1.norm().powi(3);
+        // The chord is that of the circle which lies closest to the curve.
+        let chord = (8.0 * depth / bend).sqrt();
+        let start = |height: f64| point + height * normal - chord * along;
+        let hit = curve.first_hit(start(-depth), along, 0.0);
+        let hit = hit.ok_or_else(|| TestCaseError::fail("the metal is missed"))?;
+        prop_assert!((hit.t - 0.5 * chord).abs() < 0.2 * chord, "{} of {chord}", hit.t);
+        let past = curve.first_hit(start(depth), along, 0.0);
+        prop_assert!(past.is_none_or(|hit| hit.t > 2.0 * chord), "{past:?}");
     }
 }
