@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of docs/devices and docs/real, each device as it looks (JPEG) and rays through it (PNG), frames of the shop
-# window, and films and a picture of light in flight.
+# Makes the pictures of docs/devices and docs/real, each device as it looks (JPEG) and rays through it (PNG), the table of all devices,
+# frames of the shop window, and films and a picture of light in flight.
 # Needs cloakroom on the path and Python with Pillow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -86,6 +86,9 @@ for path in sorted((work / "gallery").glob("*.png")):
         continue
     image = Image.open(path).convert("RGB")
     image.save(out / f"{path.stem}.jpg", quality=82, optimize=True, progressive=True)
+table = Image.open(work / "gallery" / "gallery.png").convert("RGB")
+table.thumbnail((1500, table.height), Image.LANCZOS)
+table.save("docs/gallery.jpg", quality=82, optimize=True, progressive=True)
 for path in sorted(work.glob("*-rays.png")):
     Image.open(path).convert("RGB").quantize(128).save(out / path.name, optimize=True)
 for path in sorted((work / "real").glob("*.png")):

@@ -4,7 +4,7 @@ use super::axes::Frame;
 use super::color_bar::ColorBar;
 use super::color_scale::ColorScale;
 use super::drawing::{Drawing, Shape};
-use super::quantity::Quantity;
+use super::quantity::{Dimension, Quantity};
 use super::{IllustrationError, type_size};
 use cloakroom::output::{Picture, RgbImage, Samples};
 use cloakroom::scene::{Colormap, PictureSettings};
@@ -19,9 +19,13 @@ pub struct ScalarMap {
     pub bar: ColorBar,
 }
 
+/// Times (ns) and shares below this are what rounding leaves of nothing: light goes 0.3 nm in such a time.
+const NOTHING: f64 = 1e-9;
+
 impl ScalarMap {
     /// The map of a channel, in the range and the colours that the settings say, or in those that
-    /// suit its numbers ([`ColorScale`] says which): differences of both signs in blue and red.
+    /// suit its numbers ([`ColorScale`] says which): differences of both signs in blue and red. Times and shares
+    /// of which all are rounding get the one color of 0, unless the settings say a range.
     ///
     /// # Errors
     ///
@@ -58,13 +62,21 @@ impl ScalarMap {
             ColorScale::of((0..samples.len()).map(|i| samples.get(i)), rounding, settings)
         };
         let mut scale = scale_of(settings);
+        let quantity = Quantity::of_channel(channel);
+        let is_nothing = |(low, high): (f64, f64)| low.abs().max(high.abs()) < NOTHING;
+        if settings.map_range.is_none()
+            && quantity.dimension != Dimension::Number
+            && scale.range.is_some_and(is_nothing)
+        {
+            (scale.range, scale.is_clipped) = (Some((0.0, 0.0)), (false, false));
+        }
         let is_difference = channel.ends_with("_difference");
         if settings.colormap == Colormap::Auto && is_difference && scale.has_both_signs() {
             scale = scale_of(&PictureSettings { colormap: Colormap::BlueRed, ..settings.clone() });
         }
         let colors = (0..samples.len()).flat_map(|i| scale.color(samples.get(i)).0).collect();
         let image = RgbImage::from_raw(width, height, colors).ok_or_else(wrong_size)?;
-        Ok(Self { image, bar: ColorBar { scale, quantity: Quantity::of_channel(channel) } })
+        Ok(Self { image, bar: ColorBar { scale, quantity } })
     }
 
     /// The map in pixels: alone, exactly as large as the picture, or with its colour bar
@@ -113,7 +125,7 @@ mod tests {
     use cloakroom::output::Channel;
 
     fn picture(width: usize, height: usize) -> Picture {
-        let times = (0..width * height).map(|i| i as f64 * 1e-15).collect();
+        let times = (0..width * height).map(|i| i as f64 * 1e-6).collect();
         let channel = |name: &str, samples| Channel { name: name.to_owned(), samples };
         Picture {
             width,
@@ -144,7 +156,7 @@ mod tests {
         let settings = PictureSettings::default();
         let range = ScalarMap::new(&picture, "time_of_flight_difference", &settings)
             .map(|map| map.bar.scale.range);
-        assert_eq!(range, Ok(Some((0.0, 14.0 * 1e-15))));
+        assert_eq!(range, Ok(Some((0.0, 14.0 * 1e-6))));
     }
 
     #[test]
@@ -178,6 +190,27 @@ mod tests {
         assert_eq!(colors([-1.0, 0.0, 2.0], "group_delay_difference"), Colormap::BlueRed);
         assert_eq!(colors([-1e-6, 0.0, 2.0], "group_delay_difference"), Colormap::Viridis);
         assert_eq!(colors([-1.0, 0.0, 2.0], "group_delay"), Colormap::Viridis);
+    }
+
+    #[test]
+    fn what_rounding_leaves_of_nothing_is_one_color() {
+        let map = |name: &str, size: f64, settings: &PictureSettings| {
+            let samples = Samples::F64(vec![-size, 0.0, 0.7 * size]);
+            let channels = vec![Channel { name: name.to_owned(), samples }];
+            let picture = Picture { width: 3, height: 1, channels, metadata: Vec::new() };
+            let map = ScalarMap::new(&picture, name, settings).expect("a map");
+            let pixels: Vec<_> = map.image.pixels().copied().collect();
+            (pixels.iter().all(|pixel| *pixel == pixels[0]), map.bar.scale.range)
+        };
+        let auto = PictureSettings::default();
+        for name in ["time_of_flight_difference", "group_delay", "absorbed"] {
+            assert_eq!(map(name, 1e-15, &auto), (true, Some((0.0, 0.0))), "{name}");
+            assert!(!map(name, 1e-8, &auto).0, "{name}");
+            let asked = PictureSettings { map_range: Some([-1e-15, 1e-15]), ..auto.clone() };
+            assert!(!map(name, 1e-15, &asked).0, "{name}");
+        }
+        // A depth has no such measure.
+        assert!(!map("first_pulse_depth", 1e-15, &auto).0);
     }
 
     #[test]

@@ -23,6 +23,8 @@ const SENTENCES = [
   ["the photograph is too large: at most {n} million pixels", "Das Foto ist zu groß: Es darf {n} Millionen Bildpunkte haben."],
   ["this is not an image that can be read (PNG, JPEG or EXR)", "Das ist kein Bild, das hier gelesen werden kann (PNG, JPEG oder EXR)."],
   ["this is a {kind} image; only PNG, JPEG and EXR can be read", "Das ist ein Bild als {kind}; gelesen werden PNG, JPEG und EXR."],
+  ["this is an EXR image, which this page cannot read; save it as PNG or JPEG, or open it with `cloakroom view`",
+    "Das ist ein Bild als EXR, das diese Seite nicht lesen kann; sichere es als PNG oder JPEG, oder öffne es mit „cloakroom view“."],
   ["this image is damaged or cut short", "Dieses Bild ist beschädigt oder abgeschnitten."],
   ["a page can show the images, and take the grids, that came with the program or with the scene that was opened, and a photograph dropped onto it; it can open no file",
     "Diese Szene nennt eine Datei, und eine Seite kann keine öffnen: nur Bilder und Gitter des Programms und der Szene, die geöffnet wurde, und ein Foto, das auf sie gezogen wird."],

@@ -13,7 +13,7 @@ use cloakroom::measure::bare;
 use cloakroom::output::{RgbImage, to_srgb};
 use cloakroom::render::Supervision;
 use cloakroom::scene::{DeviceSettings, PictureSettings, Placement, Scene};
-use cloakroom_figures::{Dimension, Quantity, ScalarMap};
+use cloakroom_figures::{Quantity, ScalarMap};
 use futures_util::FutureExt;
 use serde_json::{Value, json};
 use std::panic::AssertUnwindSafe;
@@ -184,12 +184,6 @@ impl<E: End> Painter<'_, E> {
                 let map_range = scene.picture.map_range.or(*range);
                 let settings = PictureSettings { map_range, ..scene.picture.clone() };
                 let map = ScalarMap::new(&picture, channel, &settings).map_err(Problem::of)?;
-                let map = match nothing(channel, map.bar.scale.range) {
-                    Some(settings) => {
-                        ScalarMap::new(&picture, channel, &settings).map_err(Problem::of)?
-                    }
-                    None => map,
-                };
                 let shown = map.bar.scale.range.filter(|(low, high)| low < high);
                 *range = range.or(shown.map(|(low, high)| [low, high]));
                 let scale = scale(channel, map.bar.scale.range);
@@ -227,25 +221,10 @@ fn are_alike(some: &[DeviceSettings], others: &[DeviceSettings]) -> bool {
     some.len() == others.len() && some.iter().zip(others).all(alike)
 }
 
-/// Below this, ns or shares of the power, a map is what rounding leaves of nothing: light goes 0.3 nm in such a time.
-const NOTHING: f64 = 1e-9;
-
-/// The settings that show as one color, that of 0, a map whose numbers are nothing but rounding.
-fn nothing(channel: &str, range: Option<(f64, f64)>) -> Option<PictureSettings> {
-    let is_number = Quantity::of_channel(channel).dimension == Dimension::Number;
-    let (low, high) = range.filter(|_| !is_number)?;
-    let is_nothing = low.abs().max(high.abs()) < NOTHING;
-    is_nothing.then(|| PictureSettings {
-        map_range: Some([-NOTHING, NOTHING]),
-        ..PictureSettings::default()
-    })
-}
-
 /// The scale of a map, which colors stand for which numbers, in a unit for people; no ends if no
 /// number is finite.
 fn scale(channel: &str, range: Option<(f64, f64)>) -> Value {
     let quantity = Quantity::of_channel(channel);
-    let range = if range == Some((-NOTHING, NOTHING)) { Some((0.0, 0.0)) } else { range };
     let size = range.map_or(0.0, |(low, high)| low.abs().max(high.abs()));
     let unit = quantity.unit(size);
     json!({

@@ -108,7 +108,9 @@ pub fn read_photograph(
             format!("the photograph is too large: at most {millions} million pixels")
         }
         LoadProblem::Empty => format!("this {}", LoadProblem::NotAnImage),
-        LoadProblem::NotAnImage | LoadProblem::OtherFormat(_) => format!("this {problem}"),
+        LoadProblem::NotAnImage | LoadProblem::OtherFormat(_) | LoadProblem::NotInBrowser => {
+            format!("this {problem}")
+        }
         LoadProblem::Unsupported(_) => format!("this image {problem}"),
         _ => "this image is damaged or cut short".to_owned(),
     };

@@ -18,6 +18,9 @@ use crate::memory;
 #[cfg(test)]
 mod tests;
 
+/// Whether EXR is read. A page that computes by itself would have to load what does: a twentieth of all that it is.
+const READS_EXR: bool = !cfg!(target_arch = "wasm32");
+
 /// Largest image file, in bytes.
 const MAX_FILE: u64 = 2 << 30;
 
@@ -33,7 +36,7 @@ pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
     }
     let size = || {
         let bytes = read_bytes(source)?;
-        if format(&bytes)? == ImageFormat::OpenExr {
+        if format(&bytes)? == ImageFormat::OpenExr && READS_EXR {
             let image = open_exr(&bytes, MAX_PIXELS)?;
             return Ok(image.size().into());
         }
@@ -96,7 +99,7 @@ pub fn load_bytes(
 
 /// Linear light from the bytes of an image file.
 fn read(bytes: &[u8], most_pixels: u64) -> Result<LinearImage, LoadProblem> {
-    let image = if format(bytes)? == ImageFormat::OpenExr {
+    let image = if format(bytes)? == ImageFormat::OpenExr && READS_EXR {
         let image = open_exr(bytes, most_pixels)?;
         guarded(|| image.read(bytes))?
     } else {
@@ -146,6 +149,7 @@ fn format(bytes: &[u8]) -> Result<ImageFormat, LoadProblem> {
         return Err(LoadProblem::Empty);
     }
     match image::guess_format(bytes) {
+        Ok(ImageFormat::OpenExr) if !READS_EXR => Err(LoadProblem::NotInBrowser),
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::OpenExr)) => Ok(format),
         Ok(other) => Err(LoadProblem::OtherFormat(format!("{other:?}").to_uppercase())),
         Err(_) => Err(LoadProblem::NotAnImage),

@@ -137,6 +137,11 @@ pub enum LoadProblem {
     /// An image of this kind, which is known but not read.
     #[error("is a {0} image; only PNG, JPEG and EXR can be read")]
     OtherFormat(String),
+    /// An EXR image, in a page that computes by itself.
+    #[error(
+        "is an EXR image, which this page cannot read; save it as PNG or JPEG, or open it with `cloakroom view`"
+    )]
+    NotInBrowser,
     /// The file ends early or is damaged: what the decoder says.
     #[error("is damaged or cut short: {0}")]
     Damaged(String),
