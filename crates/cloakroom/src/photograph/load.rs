@@ -18,7 +18,7 @@ use crate::memory;
 #[cfg(test)]
 mod tests;
 
-/// Whether EXR is read. A page that computes by itself would have to load what does: a twentieth of all that it is.
+/// Whether EXR is read. A page that computes by itself would have to load what does: a tenth of all that it is.
 const READS_EXR: bool = !cfg!(target_arch = "wasm32");
 
 /// Largest image file, in bytes.
