@@ -192,7 +192,7 @@ fn prism(bencher: Bencher) {
         .collect();
     bencher.counter(ItemsCount::new(RAYS)).bench(|| {
         for ray in black_box(&rays) {
-            let _ = black_box(region.advance(ray, 1e-6));
+            let _ = black_box(region.advance(ray, 1e-6, None));
         }
     });
 }

@@ -88,7 +88,7 @@ fn conformal_flow_four(bencher: Bencher, map: &str) {
     let starts = conformal_starts(&flow);
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
         for four in black_box(&starts).chunks_exact(4) {
-            black_box(flow.advance_four(&[0, 1, 2, 3].map(|i| Some(four[i])), TOLERANCE, false));
+            black_box(flow.advance_four(&[0, 1, 2, 3].map(|i| Some(four[i])), TOLERANCE, None));
         }
     });
 }
@@ -103,7 +103,7 @@ fn conformal_flow_in_plane(bencher: Bencher, map: &str) {
     }
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
         for four in black_box(&starts).chunks_exact(4) {
-            black_box(flow.advance_four(&[0, 1, 2, 3].map(|i| Some(four[i])), TOLERANCE, false));
+            black_box(flow.advance_four(&[0, 1, 2, 3].map(|i| Some(four[i])), TOLERANCE, None));
         }
     });
 }

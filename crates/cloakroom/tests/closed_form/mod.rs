@@ -65,7 +65,7 @@ fn check_piece(
     let wave_vector = direction * square(position).value.sqrt();
     let mode = ModeKind::Shared;
     let ray = InnerRay { position, wave_vector, direction, mode, virtual_point: None };
-    let end = region.advance(&ray, 1e-9).expect("an end");
+    let end = region.advance(&ray, 1e-9, None).expect("an end");
     let field = direction.any_orthonormal_vector();
     let start = ReferenceRay { position, wave_vector, electric_field: field, optical_path: 0.0 };
     // A first step from the border must not end behind it by rounding.

@@ -332,17 +332,23 @@ impl Region {
 
     /// Follows a ray from a point of the region or its border to the next surface.
     ///
-    /// `tolerance` (cm) bounds the error of position and optical path where the way is integrated.
+    /// `tolerance` (cm) bounds the error of position and optical path where the way is integrated; with `pulses` the
+    /// passage says what a pulse takes, too, to within so many cm, where the way tells that.
     ///
     /// # Errors
     ///
     /// [`NoPassage`].
-    pub fn advance(&self, ray: &InnerRay, tolerance: f64) -> Result<Passage, NoPassage> {
+    pub fn advance(
+        &self,
+        ray: &InnerRay,
+        tolerance: f64,
+        pulses: Option<f64>,
+    ) -> Result<Passage, NoPassage> {
         let passage = match self {
             Self::Homogeneous(region) => region.advance(ray),
             Self::Conformal(region) => {
                 let [passage, ..] =
-                    region.advance_four(&[Some(*ray), None, None, None], tolerance, None);
+                    region.advance_four(&[Some(*ray), None, None, None], tolerance, pulses);
                 return passage.unwrap_or(Err(NoPassage::Lost));
             }
             Self::Radial(region) => region.advance(ray),
@@ -353,8 +359,7 @@ impl Region {
     }
 
     /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what
-    /// it would get alone; with `pulses` what a pulse takes, too, where that is known from the way to within so many
-    /// cm.
+    /// it would get alone.
     #[must_use]
     pub fn advance_four(
         &self,
@@ -364,7 +369,7 @@ impl Region {
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         match self {
             Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) | Self::Spatial(_) => {
-                rays.map(|ray| ray.map(|ray| self.advance(&ray, tolerance)))
+                rays.map(|ray| ray.map(|ray| self.advance(&ray, tolerance, pulses)))
             }
             Self::Conformal(region) => region.advance_four(rays, tolerance, pulses),
         }
@@ -554,8 +559,7 @@ impl ConformalRegion {
         pulses: Option<f64>,
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         let starts = rays.map(|ray| Some((self.start(&ray?)?, ray?.wave_vector)));
-        let known = pulses.is_some_and(|to| to >= ConformalFlow::KNOWN_TO);
-        let ends = self.flow.advance_four(&starts, tolerance, known);
+        let ends = self.flow.advance_four(&starts, tolerance, pulses);
         std::array::from_fn(|i| {
             let ray = rays[i].as_ref()?;
             Some(match ends[i].as_ref() {

@@ -4,7 +4,7 @@ use super::branch::{Branch, Place, largest};
 use super::draw::{Draw, MOST_EVENTS_DRAWN};
 use super::{Coherence, Leaf, Outcome, PathRecorder};
 use crate::assembly::{Assembly, Screen};
-use crate::device::{InnerRay, NoPassage, Passage};
+use crate::device::{Dispersion, InnerRay, NoPassage, Passage};
 use glam::DVec3;
 use optics::interface::OutgoingWaves;
 use optics::wave::ComplexVector;
@@ -207,8 +207,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let mut branch = Branch::launched(launch);
         let mut here = self.begin(&mut branch);
         while let Some((device, number)) = here {
-            let region = self.assembly.device(device).region(number);
-            let passage = region.advance(&branch.inner_ray(), self.limits.tolerance);
+            let passage = self.advance((device, number), &branch.inner_ray());
             here = self.resume(&mut branch, (device, number), passage);
         }
         self.traced()
@@ -303,8 +302,19 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         rays: &[Option<InnerRay>; 4],
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         let region = self.assembly.device(device).region(region);
-        let pulses = self.group_delays.then(|| self.pulse_tolerance());
-        region.advance_four(rays, self.limits.tolerance, pulses)
+        region.advance_four(rays, self.limits.tolerance, self.pulses(device))
+    }
+
+    /// Takes a ray through a region: see [`Region::advance`](crate::device::Region::advance).
+    fn advance(&self, (device, region): (u16, u16), ray: &InnerRay) -> Result<Passage, NoPassage> {
+        let region = self.assembly.device(device).region(region);
+        region.advance(ray, self.limits.tolerance, self.pulses(device))
+    }
+
+    /// To within how much it is worked out what pulses take in a device, if that is another time than of the phase.
+    fn pulses(&self, device: u16) -> Option<f64> {
+        let disperses = self.assembly.device(device).dispersion != Dispersion::None;
+        (self.group_delays && disperses).then(|| self.pulse_tolerance())
     }
 
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
@@ -332,7 +342,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                         }
                         !self.parts(branch, region) && {
                             let ray = branch.inner_ray();
-                            let passage = region.advance(&ray, self.limits.tolerance);
+                            let passage = self.advance((device, number), &ray);
                             self.pass(branch, (device, number), passage.as_ref())
                         }
                     }

@@ -1,157 +1,227 @@
 //! What a pulse takes more than its phase, step by step.
 
+use num_complex::Complex64;
+use pulp::{Simd, WithSimd};
+
 use super::ConformalFlow;
 use super::points::Point;
-use num_complex::Complex64;
+use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
+use crate::transformation::{LaneMap, of_each};
 
-/// Panels are no longer than this share of the map's scale.
-const LONGEST: f64 = 0.3;
+/// |f'|² is looked at so often, as a share of the map's scale, for what is wanted to within [`ROUGH`] cm; between, it
+/// is a cubic, whose error is of the fourth order.
+const SPACING: f64 = 0.15;
+const ROUGH: f64 = 1e-4;
 
-/// Nearer to n = 1 than this, in |f'|² relative to c², it is looked in between.
-const NEAR: f64 = 0.1;
+/// A step that is shorter than this share of the map's scale is one cubic, if that keeps clear of n = 1: the place of
+/// it does not count.
+const SHORT: f64 = 1.2;
 
-/// The place where n = 1 is found to this share of a panel, the square of which counts.
-const FOUND: f64 = 1e-5;
+/// How far from n = 1 such a cubic must keep, in |f'|² relative to c².
+const CLEAR: f64 = 0.1;
 
-/// On steps of no more panels than this, values and slopes at both ends tell that n = 1 is nowhere.
-const SHORT: f64 = 4.0;
+/// What a cubic over two pieces may differ from what is between them, times their length in τ, as a share of what is
+/// wanted. That over one is nearer by sixteen times, and its integral by more.
+const ALLOWED: f64 = 0.2;
 
-/// Gauss and Legendre's points on [0, 1], and their weights.
-const NODES: [(f64, f64); 5] = [
-    (0.046_910_077_030_668, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
+/// How often two pieces are halved at most where they differ by more.
+const MOST_HALVINGS: u32 = 16;
+
+/// How often a cubic is halved where n = 1, until it is taken for straight.
+const HALVINGS: u32 = 4;
+
+/// What is wanted of the pulses of a packet of rays.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Accuracy {
+    /// To within how much it is worked out what they take, cm.
+    to: f64,
+    /// How often |f'|² is looked at, cm.
+    spacing: f64,
+    /// From which wave vector along z on z tells the integral of |f'|².
+    steep: f64,
+}
+
+impl Accuracy {
+    /// To within `to`, cm, of rays that are followed to within `tolerance`, cm.
+    pub fn new(flow: &ConformalFlow, tolerance: f64, to: f64) -> Self {
+        let finer = (to / ROUGH).min(1.0).sqrt().sqrt();
+        let steep = 2.0 * tolerance / to * flow.index_scale;
+        Self { to, spacing: SPACING * flow.scale() * finer, steep }
+    }
+}
 
 /// A step from a point of a ray to another, either way.
 pub(super) struct Step<'s> {
     pub flow: &'s ConformalFlow,
     pub from: &'s Point,
     pub to: &'s Point,
-    /// The wave vector along z, if z is known so well that it tells the integral of |f'|².
-    pub p_z: Option<f64>,
-}
-
-/// Where n is less than 1, or more.
-enum Side {
-    Rarer,
-    Denser,
+    /// The wave vector along z.
+    pub p_z: f64,
 }
 
 impl Step<'_> {
     /// By how much what a pulse takes on the step is more than what its phase takes, cm, at the least dispersion that
     /// causality allows: the group index is n or 1/n, whichever is larger, and n = c/|f'|, so it is the integral of
     /// |f'|² - c² over τ where that is positive. It is negative for a step backwards.
-    pub fn lateness(&self) -> f64 {
+    pub fn lateness(&self, wanted: &Accuracy) -> f64 {
         let Self { flow, from, to, p_z } = self;
         let time = to.tau - from.tau;
         let square = flow.index_scale * flow.index_scale;
         let length = (to.zeta - from.zeta).norm().max((to.jet.f - from.jet.f).norm());
-        let panels = (length / (LONGEST * flow.scale())).ceil().clamp(1.0, 1000.0);
-        let side = if panels <= SHORT { self.side(square) } else { None };
-        match (side, p_z) {
-            (Some(Side::Denser), _) => return 0.0,
-            // dz/dτ = p_z |f'|².
-            (Some(Side::Rarer), Some(p_z)) => return (to.z - from.z) / p_z - square * time,
-            _ => {}
+        let pairs = (0.5 * length / wanted.spacing).ceil().clamp(1.0, 10_000.0);
+        let [start, end] = [(0.0, from), (1.0, to)].map(|(share, point)| {
+            let bend = point.jet.f1.conj() * point.jet.f2 * point.momentum;
+            Node { share, surplus: point.jet.f1.norm_sqr() - square, slope: 2.0 * bend.re * time }
+        });
+        if length < SHORT * flow.scale() {
+            let Cubic(bounds) = Cubic::between(&start, &end);
+            if bounds.iter().all(|surplus| *surplus < -CLEAR * square) {
+                return 0.0;
+            }
+            if p_z.abs() >= wanted.steep && bounds.iter().all(|surplus| *surplus > CLEAR * square) {
+                // dz/dτ = p_z |f'|².
+                return (to.z - from.z) / p_z - square * time;
+            }
         }
-        let mut sum = 0.0;
-        let mut before = (0.0, self.surplus(from.jet.f1));
-        for number in 1..=panels as u32 {
-            let share = f64::from(number) / panels;
-            let here = if share < 1.0 { self.at(share) } else { self.surplus(to.jet.f1) };
-            sum += self.panel(before, (share, here));
-            before = (share, here);
+        let way =
+            Way { flow, powers: self.way(), square, allowed: ALLOWED * wanted.to / time.abs() };
+        let (mut sum, mut here) = (0.0, start);
+        let share = |number: usize| (0.5 * number as f64 / pairs).min(1.0);
+        for first in (1..2 * pairs as usize).step_by(LANES) {
+            // Middle, end, middle, end.
+            let shares = std::array::from_fn(|i| share(first + i));
+            let nodes = way.nodes(shares);
+            for two in nodes.chunks_exact(2).filter(|two| two[0].share < 1.0) {
+                let next = if two[1].share < 1.0 { two[1] } else { end };
+                sum += way.pieces([&here, &two[0], &next], MOST_HALVINGS);
+                here = next;
+            }
         }
         sum * time
     }
 
-    /// On which side of n = 1 all of the step is, if it clearly is: by Hermite's cubic of |f'|².
-    fn side(&self, square: f64) -> Option<Side> {
-        let time = self.to.tau - self.from.tau;
-        let known = |point: &Point| {
-            let bend = point.jet.f1.conj() * point.jet.f2 * point.momentum;
-            (point.jet.f1.norm_sqr() / square - 1.0, 2.0 * bend.re * time / square)
-        };
-        let ((a, rise), (b, fall)) = (known(self.from), known(self.to));
-        let between = |s: f64| {
-            let left = 1.0 - s;
-            let over = s * s * (3.0 - 2.0 * s);
-            a + (b - a) * over + s * left * (left * rise - s * fall)
-        };
-        let all = [a, between(0.25), between(0.5), between(0.75), b];
-        if all.iter().all(|surplus| *surplus > NEAR) {
-            Some(Side::Rarer)
-        } else if all.iter().all(|surplus| *surplus < -NEAR) {
-            Some(Side::Denser)
-        } else {
-            None
-        }
-    }
-
-    /// |f'|² - c².
-    fn surplus(&self, slope: Complex64) -> f64 {
-        slope.norm_sqr() - self.flow.index_scale * self.flow.index_scale
-    }
-
-    /// The same at a share of the step: the way is Hermite's polynomial of the fifth degree.
-    fn at(&self, s: f64) -> f64 {
+    /// ζ by the powers of the share of the step: Hermite's polynomial of the fifth degree.
+    fn way(&self) -> [Complex64; 6] {
         let (a, b, time) = (self.from, self.to, self.to.tau - self.from.tau);
-        let (left, cube) = (1.0 - s, s * s * s);
-        let over = cube * (10.0 + s * (6.0 * s - 15.0));
-        let cube_left = left * left * left;
-        let slopes = a.momentum * (s * cube_left * (1.0 + 3.0 * s))
-            - b.momentum * (left * cube * (1.0 + 3.0 * left));
-        let bends = a.force * (s * s * cube_left) + b.force * (left * left * cube);
-        let zeta = a.zeta + (b.zeta - a.zeta) * over + slopes * time + bends * (0.5 * time * time);
-        self.surplus(self.flow.map.jet(zeta).f1)
+        let [start, slope, bend] = [a.zeta, a.momentum * time, a.force * (0.5 * time * time)];
+        let place = b.zeta - start - slope - bend;
+        let speed = b.momentum * time - slope - bend * 2.0;
+        let turn = b.force * (0.5 * time * time) - bend;
+        let fifth = place * 6.0 - speed * 3.0 + turn;
+        let fourth = place * -15.0 + speed * 7.0 - turn * 2.0;
+        [start, slope, bend, place * 10.0 - speed * 4.0 + turn, fourth, fifth]
+    }
+}
+
+/// The surplus |f'|² - c² at a share of a step, and its derivative by the share.
+#[derive(Clone, Copy)]
+struct Node {
+    share: f64,
+    surplus: f64,
+    slope: f64,
+}
+
+/// The way of a step.
+struct Way<'s> {
+    flow: &'s ConformalFlow,
+    powers: [Complex64; 6],
+    square: f64,
+    /// By how much a cubic over two pieces may differ in between, times what share of the step they are.
+    allowed: f64,
+}
+
+impl Way<'_> {
+    fn nodes(&self, shares: [f64; LANES]) -> [Node; LANES] {
+        let Self { flow, powers, square, .. } = self;
+        let [surplus, slope] = of_each!(&flow.map, map => {
+            let between = Between { map, powers, shares, square: *square };
+            side_by_side(between).unwrap_or_else(|it| it.with_simd(pulp::Scalar256b))
+        });
+        std::array::from_fn(|i| Node { share: shares[i], surplus: surplus[i], slope: slope[i] })
     }
 
-    /// The integral between two shares with what there is at them.
-    fn panel(&self, a: (f64, f64), b: (f64, f64)) -> f64 {
-        if a.1 > 0.0 && b.1 > 0.0 {
-            return self.integral(a.0, b.0);
+    /// The integral of what is positive of the surplus over two pieces: by two cubics if one is nearly as good, or by
+    /// more.
+    fn pieces(&self, [from, middle, to]: [&Node; 3], halvings: u32) -> f64 {
+        let width = to.share - from.share;
+        let off = Cubic::between(from, to).middle() - middle.surplus;
+        let halves = [(from, middle), (middle, to)];
+        if halvings == 0 || !(off.abs() * width > self.allowed) {
+            let part = |(a, b)| Cubic::between(a, b).positive_part(HALVINGS);
+            return 0.5 * width * halves.map(part).iter().sum::<f64>();
         }
-        if a.1 <= 0.0 && b.1 <= 0.0 {
-            let least = -NEAR * self.flow.index_scale * self.flow.index_scale;
-            if a.1.max(b.1) < least {
-                return 0.0;
-            }
-            let middle = 0.5 * (a.0 + b.0);
-            let between = self.at(middle);
-            if between <= 0.0 {
-                return 0.0;
-            }
-            return self.panel(a, (middle, between)) + self.panel((middle, between), b);
+        let [a, b, c, d] = [0.25, 0.75, 1.0, 1.0].map(|part| from.share + width * part);
+        let nodes = self.nodes([a, b, c, d]);
+        self.pieces([from, &nodes[0], middle], halvings - 1)
+            + self.pieces([middle, &nodes[1], to], halvings - 1)
+    }
+}
+
+/// The surplus and its derivative at four shares of a step.
+struct Between<'s, M> {
+    map: &'s M,
+    powers: &'s [Complex64; 6],
+    shares: [f64; LANES],
+    square: f64,
+}
+
+impl<M: LaneMap> WithSimd for Between<'_, M> {
+    type Output = [[f64; LANES]; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let shares = Lanes::new(simd, self.shares);
+        let all = |c: Complex64| ComplexLanes { re: shares.all(c.re), im: shares.all(c.im) };
+        let (mut zeta, mut slope) = (all(self.powers[5]), all(Complex64::ZERO));
+        for power in self.powers[..5].iter().rev() {
+            slope = zeta.plus_real(slope, shares);
+            zeta = all(*power).plus_real(zeta, shares);
         }
-        let border = self.border(a, b);
-        if a.1 > 0.0 { self.integral(a.0, border) } else { self.integral(border, b.0) }
+        let jet = self.map.jets(zeta);
+        let surplus = jet.f1.norm_squared() - shares.all(self.square);
+        let rise = (jet.f1.conj() * jet.f2 * slope).re * 2.0;
+        [surplus.values(), rise.values()]
+    }
+}
+
+/// A cubic on [0, 1] by Bernstein's coefficients, between the least and the largest of which it lies.
+#[derive(Clone, Copy)]
+struct Cubic([f64; 4]);
+
+impl Cubic {
+    fn between(from: &Node, to: &Node) -> Self {
+        let third = (to.share - from.share) / 3.0;
+        let [b, c] = [from.surplus + from.slope * third, to.surplus - to.slope * third];
+        Self([from.surplus, b, c, to.surplus])
     }
 
-    fn integral(&self, a: f64, b: f64) -> f64 {
-        let of = |(node, weight): &(f64, f64)| weight * self.at(a + (b - a) * node).max(0.0);
-        (b - a) * NODES.iter().map(of).sum::<f64>()
+    fn middle(self) -> f64 {
+        let Self([a, b, c, d]) = self;
+        0.125 * (a + 3.0 * (b + c) + d)
     }
 
-    /// Where it changes its sign (the Illinois method).
-    fn border(&self, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
-        let allowed = FOUND * (b.0 - a.0).abs();
-        for _ in 0..40 {
-            let next = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
-            let here = self.at(next);
-            if (here > 0.0) == (b.1 > 0.0) {
-                a.1 *= 0.5;
+    /// The integral of what is positive of it, halved so often where it changes its sign and then taken for straight.
+    fn positive_part(self, halvings: u32) -> f64 {
+        let Self([a, b, c, d]) = self;
+        if a >= 0.0 && b >= 0.0 && c >= 0.0 && d >= 0.0 {
+            return 0.25 * (a + b + c + d);
+        }
+        if a <= 0.0 && b <= 0.0 && c <= 0.0 && d <= 0.0 {
+            return 0.0;
+        }
+        if halvings == 0 {
+            let (high, low) = (a.max(d).max(0.0), a.min(d));
+            return if low >= 0.0 {
+                0.5 * (high + low)
             } else {
-                a = b;
-            }
-            let moved = (next - b.0).abs();
-            b = (next, here);
-            if moved <= allowed || here == 0.0 {
-                break;
-            }
+                0.5 * high * (high / (high - low))
+            };
         }
-        b.0
+        let middle = |x: f64, y: f64| 0.5 * (x + y);
+        let [ab, bc, cd] = [middle(a, b), middle(b, c), middle(c, d)];
+        let [abc, bcd] = [middle(ab, bc), middle(bc, cd)];
+        let half = middle(abc, bcd);
+        let halves = [Self([a, ab, abc, half]), Self([half, bcd, cd, d])];
+        0.5 * halves.map(|half| half.positive_part(halvings - 1)).iter().sum::<f64>()
     }
 }

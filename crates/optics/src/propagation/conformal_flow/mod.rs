@@ -160,9 +160,6 @@ pub struct ConformalFlow {
 }
 
 impl ConformalFlow {
-    /// As exactly (cm) it is known what pulses take from the steps of their ways at the least.
-    pub const KNOWN_TO: f64 = 5e-5;
-
     /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `index_scale` is
     /// c, 1 for the cloak that needs no reference medium.
     pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, index_scale: f64) -> Self {
@@ -271,24 +268,23 @@ impl ConformalFlow {
         tolerance: f64,
     ) -> Result<ConformalEnd, FlowError> {
         let [end, ..] =
-            self.advance_four(&[Some((*start, wave_vector)), None, None, None], tolerance, false);
+            self.advance_four(&[Some((*start, wave_vector)), None, None, None], tolerance, None);
         end.unwrap_or(Err(FlowError::Outside))
     }
 
     /// As [`Self::advance_from`], up to four rays at once, which takes hardly longer than one. Each
-    /// end is what it would be alone. With `pulses` the ends say what pulses take, too, but for uneven
-    /// media: to within ten times the tolerance or [`Self::KNOWN_TO`], whichever is larger, where
-    /// [`Self::causal_group_path`], which takes much longer, knows it better.
+    /// end is what it would be alone. The ends say what pulses take, too, to within `pulses` (cm, or 1e-7), if
+    /// that is given and the medium is not uneven: see [`Self::causal_group_path`].
     pub fn advance_four(
         &self,
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
-        pulses: bool,
+        pulses: Option<f64>,
     ) -> [Option<Result<ConformalEnd, FlowError>>; LANES] {
-        let mut packet = RayPacket::new(self, starts, tolerance);
-        if pulses {
-            packet.with_pulses(self, tolerance);
-        }
+        let mut packet = match pulses {
+            Some(to) if !self.is_uneven() => RayPacket::with_pulses(self, starts, tolerance, to),
+            _ => RayPacket::new(self, starts, tolerance),
+        };
         while packet.moves(self) {}
         std::array::from_fn(|i| {
             let (start, _) = starts[i].as_ref()?;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use num_complex::Complex64;
 
 use super::crossing::{Crossing, RootRefinement, RootStatus};
-use super::lateness::Step;
+use super::lateness::{Accuracy, Step};
 use super::points::{Point, Points};
 use super::step_control::StepControl;
 use super::strides::{Move, Rays, StepKind, StepResult};
@@ -18,6 +18,9 @@ const COASTING: f64 = 1e-4;
 /// How far beyond a border that is near to aim, as a share of the map's scale.
 const OVERSHOOT: f64 = 0.012;
 
+/// The way between the ends of steps must be so much better known than what a pulse takes on it.
+const ALONG: f64 = 0.02;
+
 /// Four rays on their way, or fewer: each goes where it would go alone.
 pub(super) struct RayPacket {
     rays: Rays,
@@ -26,8 +29,8 @@ pub(super) struct RayPacket {
     begin: Points,
     here: Points,
     result: StepResult,
-    /// From which wave vector along z on z tells what pulses take: it is known to the tolerance.
-    steep: f64,
+    /// What is wanted of pulses.
+    pulses: Accuracy,
 }
 
 /// How far one of them has come.
@@ -93,7 +96,7 @@ impl RayPacket {
             begin: Points::default(),
             here: Points::default(),
             result: StepResult::default(),
-            steep: f64::INFINITY,
+            pulses: Accuracy::default(),
         };
         for (i, start) in starts.iter().enumerate() {
             let Some((start, wave_vector)) = start else { continue };
@@ -189,20 +192,28 @@ impl RayPacket {
         }
     }
 
-    /// From here on works out what pulses take, where the medium is that of its map.
-    pub fn with_pulses(&mut self, flow: &ConformalFlow, tolerance: f64) {
-        self.steep = 2.0 * tolerance / ConformalFlow::KNOWN_TO * flow.index_scale;
-        for ray in &mut self.states {
-            ray.lateness = Some(0.0).filter(|_| !flow.is_uneven());
+    /// The same where it is worked out, too, what pulses take, to within `to`, cm; the medium is that of its map.
+    pub fn with_pulses(
+        flow: &ConformalFlow,
+        starts: &[Option<(VirtualPoint, DVec3)>; LANES],
+        tolerance: f64,
+        to: f64,
+    ) -> Self {
+        let tolerance = tolerance.min(ALONG * to);
+        let mut packet = Self::new(flow, starts, tolerance);
+        packet.pulses = Accuracy::new(flow, tolerance, to);
+        for ray in &mut packet.states {
+            ray.lateness = Some(0.0);
         }
+        packet
     }
 
     /// Puts a ray where its move has led.
     fn arrive(&mut self, flow: &ConformalFlow, i: usize) {
         if let Some(lateness) = &mut self.states[i].lateness {
             let (from, to) = (self.here.at(i), self.result.end.at(i));
-            let p_z = Some(self.controls[i].p_z).filter(|p_z| p_z.abs() >= self.steep);
-            *lateness += Step { flow, from: &from, to: &to, p_z }.lateness();
+            let p_z = self.controls[i].p_z;
+            *lateness += Step { flow, from: &from, to: &to, p_z }.lateness(&self.pulses);
         }
         self.here.take(i, &self.result.end);
     }
