@@ -10,7 +10,7 @@ use crate::transformation::{LaneMap, of_each};
 
 /// |f'|² is looked at so often, as a share of the map's scale, for what is wanted to within [`ROUGH`] cm; between, it
 /// is a cubic, whose error is of the fourth order.
-const SPACING: f64 = 0.15;
+const SPACING: f64 = 0.2;
 const ROUGH: f64 = 1e-4;
 
 /// A step that is shorter than this share of the map's scale is one cubic, if that keeps clear of n = 1: the place of
@@ -28,7 +28,7 @@ const ALLOWED: f64 = 0.2;
 const MOST_HALVINGS: u32 = 16;
 
 /// How often a cubic is halved where n = 1, until it is taken for straight.
-const HALVINGS: u32 = 4;
+const HALVINGS: u32 = 3;
 
 /// What is wanted of the pulses of a packet of rays.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,7 +67,8 @@ impl Step<'_> {
         let Self { flow, from, to, p_z } = self;
         let time = to.tau - from.tau;
         let square = flow.index_scale * flow.index_scale;
-        let length = (to.zeta - from.zeta).norm().max((to.jet.f - from.jet.f).norm());
+        let [virtually, really] = [to.zeta - from.zeta, to.jet.f - from.jet.f];
+        let length = virtually.norm_sqr().max(really.norm_sqr()).sqrt();
         let pairs = (0.5 * length / wanted.spacing).ceil().clamp(1.0, 10_000.0);
         let [start, end] = [(0.0, from), (1.0, to)].map(|(share, point)| {
             let bend = point.jet.f1.conj() * point.jet.f2 * point.momentum;
