@@ -1,7 +1,7 @@
 //! How late a pulse comes at least.
 
 use super::principal_axes::principal_axes;
-use super::{Medium, RayWave, Tensor};
+use super::{Medium, ModeKind, Tensor};
 use crate::wave::{ComplexVector, poynting};
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
@@ -98,11 +98,55 @@ impl Medium {
         let (permittivity, permeability) = self.tensors();
         Some([permittivity.scalar()?, permeability.scalar()?])
     }
+}
 
-    /// That of a wave whose ray is given, over what the phase takes along the ray.
-    pub(crate) fn causal_group_over_phase(&self, wave: &RayWave, ray: DVec3) -> f64 {
-        let electric = wave.electric.unwrap_or_else(|| ray.any_orthonormal_vector().into());
-        self.causal_group_index(wave.wave_vector, electric) / wave.wave_vector.dot(ray)
+/// A medium by its principal values, and which wave of it is meant: for what a pulse takes along a ray, over what its
+/// phase takes, in closed form.
+///
+/// The ray index N, by which the phase runs along a ray of a given direction, is stationary in the wave vector (Fermat), so
+/// a pulse takes d(ωN)/dω with the direction kept, which is as with the energy in [`Medium::group_index`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum PrincipalMedium {
+    /// ε = µ of these values along the first axis, the second and the third.
+    Matched([f64; 3]),
+    /// A dielectric, µ = 1, whose third axis is the optic one.
+    Uniaxial { ordinary: f64, extraordinary: f64, mode: ModeKind },
+}
+
+impl PrincipalMedium {
+    /// d(ωN)/dω over N at the least dispersion that causality allows, for a ray whose unit vector has these squared
+    /// components along the axes.
+    pub fn group_over_phase(&self, parts: [f64; 3]) -> f64 {
+        // d ln e/d ln ω.
+        let growth = |value: f64| value.max(2.0 - value) / value - 1.0;
+        let grown = match *self {
+            // N² = det ε t·ε⁻¹t.
+            Self::Matched(values) => {
+                let terms = [0, 1, 2].map(|i| parts[i] / values[i]);
+                let growths = values.map(growth);
+                let shared = terms.iter().zip(growths).map(|(term, growth)| term * growth);
+                growths.iter().sum::<f64>() - shared.sum::<f64>() / terms.iter().sum::<f64>()
+            }
+            // N² = ε_e sin²θ + ε_o cos²θ.
+            Self::Uniaxial { ordinary, extraordinary, mode: ModeKind::Extraordinary } => {
+                let terms = [extraordinary * (parts[0] + parts[1]), ordinary * parts[2]];
+                let grown = terms[0] * growth(extraordinary) + terms[1] * growth(ordinary);
+                grown / (terms[0] + terms[1])
+            }
+            Self::Uniaxial { ordinary, .. } => growth(ordinary),
+        };
+        1.0 + 0.5 * grown
+    }
+
+    /// Which of its principal values are above 1: where that changes, the group index has a kink.
+    pub fn sides(&self) -> u8 {
+        let side = |bit: usize, value: f64| u8::from(value > 1.0) << bit;
+        match *self {
+            Self::Matched([a, b, c]) => side(0, a) | side(1, b) | side(2, c),
+            Self::Uniaxial { ordinary, extraordinary, .. } => {
+                side(0, ordinary) | side(1, extraordinary)
+            }
+        }
     }
 }
 
@@ -110,4 +154,42 @@ impl Medium {
 fn least_dispersive(tensor: &DMat3) -> DMat3 {
     let (values, axes) = principal_axes(tensor);
     axes * DMat3::from_diagonal(values.max(DVec3::splat(2.0) - values)) * axes.transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By the energy of the wave that runs along a ray, over its phase.
+    fn by_energy(medium: &Medium, mode: ModeKind, ray: DVec3) -> f64 {
+        let waves = medium.waves_along_ray(ray);
+        let wave = waves.iter().find(|wave| wave.kind == mode).expect("a wave");
+        let electric = wave.electric.unwrap_or_else(|| ray.any_orthonormal_vector().into());
+        medium.causal_group_index(wave.wave_vector, electric) / wave.wave_vector.dot(ray)
+    }
+
+    #[test]
+    fn principal_values_delay_pulses_as_their_energy_says() {
+        for (x, y, z) in [(0.3, -0.5, 0.8), (-0.9, 0.1, 0.2), (0.0, 0.7, 0.1), (1.0, 0.0, 0.0)] {
+            let ray = DVec3::new(x, y, z).normalize();
+            let parts = (ray * ray).to_array();
+            for values in [[0.3, 2.0, 1.5], [0.2, 5.0, 0.9], [2.0, 3.0, 3.0], [0.5, 0.5, 0.5]] {
+                let tensor = DMat3::from_diagonal(DVec3::from_array(values));
+                let medium = Medium::transformed(tensor, tensor.inverse(), tensor.determinant());
+                let found = PrincipalMedium::Matched(values).group_over_phase(parts);
+                let expected = by_energy(&medium, ModeKind::Shared, ray);
+                assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected} {values:?}");
+            }
+            for [ordinary, extraordinary] in [[2.75, 2.21], [2.5, 0.31], [0.31, 2.5], [0.3, 0.4]] {
+                let medium = Medium::uniaxial_electric(1.0, ordinary, extraordinary, DVec3::Z);
+                let medium = medium.expect("a medium");
+                for mode in [ModeKind::Ordinary, ModeKind::Extraordinary] {
+                    let principal = PrincipalMedium::Uniaxial { ordinary, extraordinary, mode };
+                    let found = principal.group_over_phase(parts);
+                    let expected = by_energy(&medium, mode, ray);
+                    assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected} {mode:?}");
+                }
+            }
+        }
+    }
 }

@@ -19,6 +19,7 @@ mod tensor;
 mod wave_surface;
 
 pub use error::MediumError;
+pub(crate) use group_index::PrincipalMedium;
 pub(crate) use modes::{BOTH_MODES, LocalMode, LocalModes, Tangential, mutual_flux};
 pub use modes::{Heading, Mode, ModeKind};
 pub use principal_axes::principal_axes;

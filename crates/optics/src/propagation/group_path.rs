@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 /// Points of a panel; every other one makes a coarser panel, by which the error is judged.
 pub(super) const NODES: usize = 9;
 
-/// How often a panel is halved at most, as where the least dispersion of a medium sets in.
+/// How often a panel is halved at most.
 const MOST_HALVINGS: u32 = 20;
 
 /// What rounding makes of a panel, relative to its largest values: halving mends nothing there.
@@ -67,24 +67,51 @@ impl<const N: usize> Panel<N> {
     }
 }
 
-/// ∫ ratio d(optical path) along a way, cm, to within about `tolerance` (cm): `panel` gives the
-/// ratio and the optical path at shares of the way between 0 and 1.
-pub(super) fn integral_along(
-    panel: &dyn Fn([f64; NODES]) -> ([f64; NODES], [f64; NODES]),
-    tolerance: f64,
-) -> f64 {
-    integral_between([0.0, 1.0], panel, 0.1 * tolerance, MOST_HALVINGS)
+/// Halvings that find a kink between two points: twice the last is a difference of ratios that nobody sees.
+const KINK_HALVINGS: u32 = 30;
+
+/// Closer to the end of a panel than this share of it, a kink is at the end.
+const AT_END: f64 = 1e-6;
+
+/// What is integrated along a way, by shares of it between 0 and 1.
+pub(super) struct Integrand<'a> {
+    /// The ratio and the optical path.
+    pub panel: &'a dyn Fn([f64; NODES]) -> ([f64; NODES], [f64; NODES]),
+    /// What changes where the ratio has a kink, as where the least dispersion of a medium sets in.
+    pub sides: &'a dyn Fn(f64) -> u8,
+}
+
+impl Integrand<'_> {
+    /// Where a panel is cut: at a kink if it has one, else in the middle.
+    fn cut(&self, [from, to]: [f64; 2], shares: [f64; NODES]) -> f64 {
+        let ends = shares.map(|share| (share, (self.sides)(share)));
+        let kink = ends.windows(2).find(|two| two[0].1 != two[1].1).map(|two| {
+            let ([mut low, mut high], side) = ([two[0].0, two[1].0], two[0].1);
+            for _ in 0..KINK_HALVINGS {
+                let middle = 0.5 * (low + high);
+                *(if (self.sides)(middle) == side { &mut low } else { &mut high }) = middle;
+            }
+            0.5 * (low + high)
+        });
+        let margin = AT_END * (to - from);
+        kink.filter(|kink| kink - from > margin && to - kink > margin).unwrap_or(0.5 * (from + to))
+    }
+}
+
+/// ∫ ratio d(optical path) along a way, cm, to within about `tolerance` (cm).
+pub(super) fn integral_along(integrand: &Integrand<'_>, tolerance: f64) -> f64 {
+    integral_between([0.0, 1.0], integrand, 0.1 * tolerance, MOST_HALVINGS)
 }
 
 fn integral_between(
     [from, to]: [f64; 2],
-    panel: &dyn Fn([f64; NODES]) -> ([f64; NODES], [f64; NODES]),
+    integrand: &Integrand<'_>,
     tolerance: f64,
     halvings: u32,
 ) -> f64 {
     let middle = 0.5 * (from + to);
-    let share = |i: usize| middle + 0.5 * (to - from) * Panel::<NODES>::node(i);
-    let (ratio, path) = panel(array::from_fn(share));
+    let shares = array::from_fn(|i| middle + 0.5 * (to - from) * Panel::<NODES>::node(i));
+    let (ratio, path) = (integrand.panel)(shares);
     let every_other = |values: &[f64; NODES]| array::from_fn(|i| values[2 * i]);
     let fine = FINE.integral(&ratio, &path);
     let coarse = COARSE.integral(&every_other(&ratio), &every_other(&path));
@@ -93,54 +120,70 @@ fn integral_between(
     if (fine - coarse).abs() <= tolerance.max(rounding) || halvings == 0 {
         return fine;
     }
-    let half = |ends: [f64; 2]| integral_between(ends, panel, 0.5 * tolerance, halvings - 1);
-    half([from, middle]) + half([middle, to])
+    let cut = integrand.cut([from, to], shares);
+    let part = |ends: [f64; 2]| integral_between(ends, integrand, 0.5 * tolerance, halvings - 1);
+    part([from, cut]) + part([cut, to])
 }
 
-/// The same, the ratio being a function of the point and of the unit vector of the ray there.
+/// The same, the ratio being a function of the point and of the unit vector of the ray there. It has kinks only where
+/// `sides`, a function of the point, changes.
 pub fn group_path_along(
     way: impl Fn(f64) -> PathPoint,
     ratio: impl Fn(DVec3, DVec3) -> f64,
+    sides: impl Fn(DVec3) -> u8,
     tolerance: f64,
 ) -> f64 {
-    integral_along(
-        &|shares| {
-            let points = shares.map(&way);
-            let ratio = array::from_fn(|i| {
-                let rates = FINE.derivative[i].iter().zip(&points);
-                let rate: DVec3 = rates.map(|(d, point)| point.position * *d).sum();
-                ratio(points[i].position, rate.normalize_or_zero())
-            });
-            (ratio, points.map(|point| point.optical_path))
-        },
-        tolerance,
-    )
+    let panel = |shares: [f64; NODES]| {
+        let points = shares.map(&way);
+        let ratio = array::from_fn(|i| {
+            let rates = FINE.derivative[i].iter().zip(&points);
+            let rate: DVec3 = rates.map(|(d, point)| point.position * *d).sum();
+            // A way of no length takes no time.
+            rate.try_normalize().map_or(1.0, |ray| ratio(points[i].position, ray))
+        });
+        (ratio, points.map(|point| point.optical_path))
+    };
+    let sides = |share: f64| sides(way(share).position);
+    integral_along(&Integrand { panel: &panel, sides: &sides }, tolerance)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::cell::Cell;
 
     #[test]
     fn integrals_of_known_functions_come_out() {
         // ∫ cos d(sin) from 0 to 1, and a kink.
         let smooth = |x: [f64; NODES]| (x.map(f64::cos), x.map(f64::sin));
         let exact = 0.5 + 0.25 * 2f64.sin();
+        let smooth = Integrand { panel: &smooth, sides: &|_| 0 };
         assert!((integral_along(&smooth, 1e-12) - exact).abs() < 1e-12);
-        let kink = |x: [f64; NODES]| (x.map(|x| x.max(0.3)), x.map(|x| x * x));
+        let panels = Cell::new(0);
+        let kink = |x: [f64; NODES]| {
+            panels.set(panels.get() + 1);
+            (x.map(|x| x.max(0.3)), x.map(|x| x * x))
+        };
         let exact = 0.3 * 0.09 + 2.0 / 3.0 * (1.0 - 0.027);
-        assert!((integral_along(&kink, 1e-9) - exact).abs() < 1e-9);
+        let unknown = Integrand { panel: &kink, sides: &|_| 0 };
+        assert!((integral_along(&unknown, 1e-9) - exact).abs() < 1e-9);
+        // Where it is known to be, it costs two panels.
+        panels.set(0);
+        let known = Integrand { panel: &kink, sides: &|x| u8::from(x > 0.3) };
+        assert!((integral_along(&known, 1e-9) - exact).abs() < 1e-9);
+        assert_eq!(panels.get(), 3);
     }
 
     #[test]
     fn what_rounding_hides_is_not_looked_for() {
         // A kink far along a way: 1e-18 cm cannot be had of 1e3 cm.
-        let panels = std::cell::Cell::new(0);
+        let panels = Cell::new(0);
         let kink = |x: [f64; NODES]| {
             panels.set(panels.get() + 1);
             (x.map(|x| x.max(0.3)), x.map(|x| 1e3 + x * x))
         };
         let exact = 0.3 * 0.09 + 2.0 / 3.0 * (1.0 - 0.027);
+        let kink = Integrand { panel: &kink, sides: &|_| 0 };
         assert!((integral_along(&kink, 1e-18) - exact).abs() < 1e-9);
         assert!(panels.get() < 1000, "{} panels", panels.get());
     }

@@ -127,11 +127,27 @@ impl RadialMap {
     /// diag(s, 1/s, k² s) along r, around and along z, or diag(k s², k, k) about a centre.
     #[must_use]
     pub fn tensor(&self, point: DVec3) -> DMat3 {
+        let [radial, around, axial] = self.values(point);
+        self.tensor_of(point, radial, around, axial)
+    }
+
+    /// Its principal values along r, around and along z, or along r and twice across.
+    fn values(&self, point: DVec3) -> [f64; 3] {
         let (k, s) = (self.stretch(), self.shrinkage(point));
         match self.symmetry {
-            Symmetry::Axis => self.tensor_of(point, s, 1.0 / s, k * k * s),
-            Symmetry::Centre => self.tensor_of(point, k * s * s, k, k),
+            Symmetry::Axis => [s, 1.0 / s, k * k * s],
+            Symmetry::Centre => [k * s * s, k, k],
         }
+    }
+
+    /// Its principal values and axes.
+    pub(crate) fn principal_values(&self, point: DVec3) -> ([f64; 3], [DVec3; 3]) {
+        let radial = self.radial(point);
+        let [around, last] = match self.symmetry {
+            Symmetry::Axis => [DVec3::Z.cross(radial), DVec3::Z],
+            Symmetry::Centre => radial.any_orthonormal_pair().into(),
+        };
+        (self.values(point), [radial, around, last])
     }
 
     /// The inverse of the tensor at a physical point.

@@ -100,8 +100,10 @@ impl ClosedFormRegion {
     /// The speed of light times the time that a pulse takes on that way, cm, at the least
     /// dispersion that causality allows: the group index is n or 1/n, whichever is larger.
     pub(super) fn causal_group_path(&self, ray: &InnerRay, tolerance: f64) -> f64 {
-        let ratio = |position: DVec3, _| self.medium.squared_index(position).value.recip().max(1.0);
-        group_path_along(self.way(ray), ratio, tolerance)
+        let square = |position: DVec3| self.medium.squared_index(position).value;
+        let ratio = |position: DVec3, _| square(position).recip().max(1.0);
+        let sides = |position: DVec3| u8::from(square(position) > 1.0);
+        group_path_along(self.way(ray), ratio, sides, tolerance)
     }
 }
 

@@ -4,7 +4,7 @@ use super::points::Point;
 use super::ray_packet::RayPacket;
 use super::{ConformalFlow, FlowError, VirtualPoint};
 use crate::propagation::PathPoint;
-use crate::propagation::group_path::{NODES, integral_along};
+use crate::propagation::group_path::{Integrand, NODES, integral_along};
 use glam::DVec3;
 use num_complex::Complex64;
 
@@ -134,7 +134,8 @@ impl ConformalFlow {
                 };
                 (points.map(ratio), points.map(|(_, tau)| speed * tau))
             };
-            integral_along(&panel, tolerance)
+            let sides = |share: f64| u8::from(self.index_at(&self.map.jet(ways(share).0)) > 1.0);
+            integral_along(&Integrand { panel: &panel, sides: &sides }, tolerance)
         };
         if wave_vector.z == 0.0 && !self.is_uneven() {
             let end = self.advance_from(start, wave_vector, tolerance)?;

@@ -61,14 +61,19 @@ impl CentralLens {
 
     /// The local medium.
     pub fn medium(&self, position: DVec3) -> Medium {
+        let index = self.index_at(position);
+        if index == 1.0 { Medium::AIR } else { Medium::dielectric(index) }
+    }
+
+    /// The index at a point inside or on the surface.
+    pub(super) fn index_at(&self, position: DVec3) -> f64 {
         let r = position.length();
         // On the surface it is that of air to the last bit.
         if (r - self.radius).abs() < 1e-9 * self.radius {
-            Medium::AIR
-        } else {
-            // Eaton's family has a pole at the centre.
-            Medium::dielectric(self.index(r.clamp(NEAREST * self.radius, self.radius)))
+            return 1.0;
         }
+        // Eaton's family has a pole at the centre.
+        self.index(r.clamp(NEAREST * self.radius, self.radius))
     }
 
     /// The point at a share of the way that [`Self::advance`] takes.

@@ -19,7 +19,7 @@ pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 
 use super::{PathEnd, PathPoint, first_way_out, group_path_along, turn_in_plane};
 pub use crate::geometry::Border;
-use crate::medium::{Medium, ModeKind};
+use crate::medium::{Medium, ModeKind, PrincipalMedium};
 use crate::transformation::RadialMap;
 use glam::DVec3;
 
@@ -139,12 +139,37 @@ impl RadialFlow {
         tolerance: f64,
     ) -> f64 {
         let ratio = |at: DVec3, ray: DVec3| {
-            let Some(medium) = self.medium(at) else { return f64::NAN };
-            let waves = medium.waves_along_ray(ray);
-            let own = waves.iter().find(|wave| wave.kind == mode).or(waves.first());
-            own.map_or(f64::NAN, |wave| medium.causal_group_over_phase(wave, ray))
+            let (medium, axes) = self.principal(at, mode);
+            medium.group_over_phase(axes.map(|axis| axis.dot(ray).powi(2)))
         };
-        group_path_along(self.way(position, wave_vector, mode), ratio, tolerance)
+        let sides = |at: DVec3| self.principal(at, mode).0.sides();
+        group_path_along(self.way(position, wave_vector, mode), ratio, sides, tolerance)
+    }
+
+    /// The medium at a point for a wave, and its principal axes.
+    fn principal(&self, at: DVec3, mode: ModeKind) -> (PrincipalMedium, [DVec3; 3]) {
+        let uniaxial = |ordinary: f64, extraordinary: f64, axis: DVec3| {
+            let (a, b) = axis.any_orthonormal_pair();
+            (PrincipalMedium::Uniaxial { ordinary, extraordinary, mode }, [a, b, axis])
+        };
+        match self {
+            Self::Lens(lens) => {
+                let square = lens.index_at(at).powi(2);
+                uniaxial(square, square, DVec3::Z)
+            }
+            Self::Transmuted(sphere) => {
+                let extraordinary = sphere.extraordinary_index(at.length()).powi(2);
+                uniaxial(TransmutedSphere::ORDINARY_INDEX.powi(2), extraordinary, self.outward(at))
+            }
+            Self::Transformed(shell) => {
+                let (values, axes) = shell.map.principal_values(shell.beside_hole(at));
+                (PrincipalMedium::Matched(values), axes)
+            }
+            Self::Uniaxial(cylinder) => {
+                let point = cylinder.point(at);
+                uniaxial(point.ordinary, point.extraordinary, point.axis)
+            }
+        }
     }
 
     /// Where both waves of the medium start as one, along the optic axis, and then part: their

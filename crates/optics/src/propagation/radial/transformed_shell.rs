@@ -28,12 +28,20 @@ impl TransformedShell {
     /// The local medium.
     pub fn medium(&self, position: DVec3) -> Medium {
         let map = &self.map;
-        let at_hole = map.radius(position) <= map.inner * (1.0 + AT_HOLE);
-        let off_hole = map.radial(position) * (map.inner * (1.0 + BESIDE_HOLE));
-        let position = if at_hole { off_hole } else { position };
+        let position = self.beside_hole(position);
         // det (J Jᵀ/det J) = 1/det J.
         let determinant = map.determinant(position).recip();
         Medium::transformed(map.tensor(position), map.inverse_tensor(position), determinant)
+    }
+
+    /// A point, kept off the hole.
+    pub(super) fn beside_hole(&self, position: DVec3) -> DVec3 {
+        let map = &self.map;
+        if map.radius(position) <= map.inner * (1.0 + AT_HOLE) {
+            map.radial(position) * (map.inner * (1.0 + BESIDE_HOLE))
+        } else {
+            position
+        }
     }
 
     /// Follows a ray from a point of the border to where it comes out. It never comes to the hole.

@@ -57,7 +57,7 @@ impl UniaxialCylinder {
         self.axis == OpticAxis::Radial && mode != ModeKind::Extraordinary
     }
 
-    fn point(&self, position: DVec3) -> UniaxialPoint {
+    pub(super) fn point(&self, position: DVec3) -> UniaxialPoint {
         let large = self.map.stretch() * self.map.stretch();
         let s = self.map.shrinkage(position).max(LEAST_S);
         let small = large * s * s;
