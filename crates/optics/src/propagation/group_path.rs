@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 /// Points of a panel; every other one makes a coarser panel, by which the error is judged.
-pub(super) const NODES: usize = 9;
+pub(super) const NODES: usize = 17;
 
 /// How often a panel is halved at most.
 const MOST_HALVINGS: u32 = 20;
@@ -23,7 +23,7 @@ struct Panel<const N: usize> {
 }
 
 static FINE: LazyLock<Panel<NODES>> = LazyLock::new(Panel::new);
-static COARSE: LazyLock<Panel<5>> = LazyLock::new(Panel::new);
+static COARSE: LazyLock<Panel<9>> = LazyLock::new(Panel::new);
 
 impl<const N: usize> Panel<N> {
     fn node(i: usize) -> f64 {
@@ -100,7 +100,7 @@ impl Integrand<'_> {
 
 /// ∫ ratio d(optical path) along a way, cm, to within about `tolerance` (cm).
 pub(super) fn integral_along(integrand: &Integrand<'_>, tolerance: f64) -> f64 {
-    integral_between([0.0, 1.0], integrand, 0.1 * tolerance, MOST_HALVINGS)
+    integral_between([0.0, 1.0], integrand, tolerance, MOST_HALVINGS)
 }
 
 fn integral_between(

@@ -119,6 +119,12 @@ const PIECES: f64 = 96.0;
 /// sin² of the angle of p to the axis below which both waves are one.
 const ONE_WAVE: f64 = 1e-28;
 
+/// How often a step is cut at most where the group index has a kink, by how many halvings that is found, and closer
+/// to an end of the step than which share it is there already.
+const MOST_CUTS: u32 = 3;
+const KINK_HALVINGS: u32 = 30;
+const AT_END: f64 = 1e-6;
+
 /// What a medium is at a point.
 struct Local {
     square: f64,
@@ -439,14 +445,26 @@ impl SpatialFlow {
                 }
             }
             let (mut end, mut error) = step(&rates, (&state, &first), h, &weight);
+            let (mut uncut, mut cuts) = (None, 0);
             while error.is_nan() || error > 1.0 {
-                h *= step_factor(error).min(0.9);
-                if h * speed < STEPS[1] * self.size || h.is_nan() {
-                    return Err(FlowError::Stalled);
+                let kink = || self.kink((&state, &first), (&end, &rates(&end)), h);
+                if let Carried::GroupPath = carried
+                    && cuts < MOST_CUTS
+                    && let Some(share) = kink()
+                {
+                    uncut.get_or_insert(h);
+                    cuts += 1;
+                    h *= share;
+                } else {
+                    h *= step_factor(error).min(0.9);
+                    if h * speed < STEPS[1] * self.size || h.is_nan() {
+                        return Err(FlowError::Stalled);
+                    }
                 }
                 (end, error) = step(&rates, (&state, &first), h, &weight);
             }
-            wanted = h * step_factor(error);
+            // Beyond a kink it goes on as before it.
+            wanted = uncut.unwrap_or(h * step_factor(error));
             let last = rates(&end);
             let take = |h: f64| step(&rates, (&state, &first), h, &weight).0;
             let met = self.way_out((&state, &first), (&end, &last), h, (&take, &rates))?;
@@ -457,6 +475,37 @@ impl SpatialFlow {
             (state, first) = (end, last);
         }
         Err(FlowError::StepLimit)
+    }
+
+    /// At which share of a step between states with these rates, if at any inside, a principal value passes 1: there
+    /// the group index has a kink. The way is Hermite's cubic.
+    fn kink(
+        &self,
+        (a, first): (&State, &State),
+        (b, last): (&State, &State),
+        h: f64,
+    ) -> Option<f64> {
+        let sides = |at: DVec3| {
+            let Local { square, excess, .. } = self.medium.local(at);
+            (square > 1.0, square * (1.0 + excess) > 1.0)
+        };
+        let ([from, to], [v, w]) =
+            ([a, b].map(|s| vector(s, 0)), [first, last].map(|r| vector(r, 0)));
+        let at = |share: f64| {
+            let left = 1.0 - share;
+            from + (to - from) * (share * share * (3.0 - 2.0 * share))
+                + (v * left - w * share) * (share * left * h)
+        };
+        let side = sides(from);
+        if !to.is_finite() || sides(to) == side {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..KINK_HALVINGS {
+            let middle = 0.5 * (low + high);
+            *(if sides(at(middle)) == side { &mut low } else { &mut high }) = middle;
+        }
+        Some(high).filter(|share| *share > AT_END && *share < 1.0 - AT_END)
     }
 
     /// One over what a step may be off in each component.
