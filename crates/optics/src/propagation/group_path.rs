@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 /// Points of a panel; every other one makes a coarser panel, by which the error is judged.
-pub(super) const NODES: usize = 17;
+const NODES: usize = 17;
 
 /// How often a panel is halved at most.
 const MOST_HALVINGS: u32 = 20;
@@ -74,11 +74,11 @@ const KINK_HALVINGS: u32 = 30;
 const AT_END: f64 = 1e-6;
 
 /// What is integrated along a way, by shares of it between 0 and 1.
-pub(super) struct Integrand<'a> {
+struct Integrand<'a> {
     /// The ratio and the optical path.
-    pub panel: &'a dyn Fn([f64; NODES]) -> ([f64; NODES], [f64; NODES]),
+    panel: &'a dyn Fn([f64; NODES]) -> ([f64; NODES], [f64; NODES]),
     /// What changes where the ratio has a kink, as where the least dispersion of a medium sets in.
-    pub sides: &'a dyn Fn(f64) -> u8,
+    sides: &'a dyn Fn(f64) -> u8,
 }
 
 impl Integrand<'_> {
@@ -99,7 +99,7 @@ impl Integrand<'_> {
 }
 
 /// ∫ ratio d(optical path) along a way, cm, to within about `tolerance` (cm).
-pub(super) fn integral_along(integrand: &Integrand<'_>, tolerance: f64) -> f64 {
+fn integral_along(integrand: &Integrand<'_>, tolerance: f64) -> f64 {
     integral_between([0.0, 1.0], integrand, tolerance, MOST_HALVINGS)
 }
 

@@ -246,11 +246,7 @@ impl Region {
                 least_dispersive.as_ref().map_or(f64::NAN, |law| by_law(medium, law))
             }
             Self::Conformal(region) if region.loss_tangent == 0.0 => {
-                let path = || {
-                    let start = region.start(ray)?;
-                    region.flow.causal_group_path(&start, ray.wave_vector, tolerance).ok()
-                };
-                end.group_path.or_else(path).unwrap_or(f64::NAN)
+                end.group_path.unwrap_or(f64::NAN)
             }
             Self::Conformal(_) => f64::NAN,
             Self::Radial(region) if region.inner == FarSide::Outside && region.turns_back(ray) => {

@@ -3,8 +3,8 @@
 use num_complex::Complex64;
 use pulp::{Simd, WithSimd};
 
-use super::ConformalFlow;
 use super::points::Point;
+use super::{ConformalFlow, IndexPerturbation};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
 use crate::transformation::{LaneMap, of_each};
 
@@ -13,8 +13,8 @@ use crate::transformation::{LaneMap, of_each};
 const SPACING: f64 = 0.2;
 const ROUGH: f64 = 1e-4;
 
-/// A step that is shorter than this share of the map's scale is one cubic, if that keeps clear of n = 1: the place of
-/// it does not count.
+/// A step that is shorter than this share of the map's scale, or in an uneven medium than two looks, is one cubic, if
+/// that keeps clear of n = 1: the place of it does not count.
 const SHORT: f64 = 1.2;
 
 /// How far from n = 1 such a cubic must keep, in |f'|² relative to c².
@@ -37,6 +37,8 @@ pub(super) struct Accuracy {
     to: f64,
     /// How often |f'|² is looked at, cm.
     spacing: f64,
+    /// Up to which length a step may be one cubic, cm.
+    short: f64,
     /// From which wave vector along z on z tells the integral of |f'|².
     steep: f64,
 }
@@ -46,7 +48,8 @@ impl Accuracy {
     pub fn new(flow: &ConformalFlow, tolerance: f64, to: f64) -> Self {
         let finer = (to / ROUGH).min(1.0).sqrt().sqrt();
         let steep = 2.0 * tolerance / to * flow.index_scale;
-        Self { to, spacing: SPACING * flow.scale() * finer, steep }
+        let short = if flow.is_uneven() { 2.0 * SPACING } else { SHORT } * flow.scale();
+        Self { to, spacing: SPACING * flow.scale() * finer, short, steep }
     }
 }
 
@@ -55,33 +58,31 @@ pub(super) struct Step<'s> {
     pub flow: &'s ConformalFlow,
     pub from: &'s Point,
     pub to: &'s Point,
+    /// By how much the parameter of the ray grows, of which τ is one in media that are not uneven.
+    pub time: f64,
     /// The wave vector along z.
     pub p_z: f64,
 }
 
 impl Step<'_> {
     /// By how much what a pulse takes on the step is more than what its phase takes, cm, at the least dispersion that
-    /// causality allows: the group index is n or 1/n, whichever is larger, and n = c/|f'|, so it is the integral of
-    /// |f'|² - c² over τ where that is positive. It is negative for a step backwards.
+    /// causality allows: the group index is n or 1/n, whichever is larger, and n = c ρ/|f'|, so it is the integral of
+    /// |f'|² - c² ρ² over the parameter where that is positive. It is negative for a step backwards.
     pub fn lateness(&self, wanted: &Accuracy) -> f64 {
-        let Self { flow, from, to, p_z } = self;
-        let time = to.tau - from.tau;
+        let Self { flow, from, to, time, p_z } = *self;
         let square = flow.index_scale * flow.index_scale;
         let [virtually, really] = [to.zeta - from.zeta, to.jet.f - from.jet.f];
         let length = virtually.norm_sqr().max(really.norm_sqr()).sqrt();
         let pairs = (0.5 * length / wanted.spacing).ceil().clamp(1.0, 10_000.0);
-        let [start, end] = [(0.0, from), (1.0, to)].map(|(share, point)| {
-            let bend = point.jet.f1.conj() * point.jet.f2 * point.momentum;
-            Node { share, surplus: point.jet.f1.norm_sqr() - square, slope: 2.0 * bend.re * time }
-        });
-        if length < SHORT * flow.scale() {
+        let [start, end] = [(0.0, from), (1.0, to)].map(|(share, point)| self.node(share, point));
+        if length < wanted.short {
             let Cubic(bounds) = Cubic::between(&start, &end);
             if bounds.iter().all(|surplus| *surplus < -CLEAR * square) {
                 return 0.0;
             }
             if p_z.abs() >= wanted.steep && bounds.iter().all(|surplus| *surplus > CLEAR * square) {
                 // dz/dτ = p_z |f'|².
-                return (to.z - from.z) / p_z - square * time;
+                return (to.z - from.z) / p_z - square * (to.tau - from.tau);
             }
         }
         let way =
@@ -101,9 +102,20 @@ impl Step<'_> {
         sum * time
     }
 
+    fn node(&self, share: f64, point: &Point) -> Node {
+        let square = self.flow.index_scale * self.flow.index_scale;
+        let perturbation = self.flow.index_perturbation.as_deref();
+        let (uneven, gradient) =
+            perturbation.map_or((1.0, Complex64::ZERO), |uneven| uneven.look(point.jet.f));
+        let stretched = 2.0 * (point.jet.f1.conj() * point.jet.f2 * point.momentum).re;
+        let climbed = square * (point.velocity.conj() * gradient).re;
+        let surplus = point.jet.f1.norm_sqr() - square * uneven;
+        Node { share, surplus, slope: (stretched - climbed) * self.time }
+    }
+
     /// ζ by the powers of the share of the step: Hermite's polynomial of the fifth degree.
     fn way(&self) -> [Complex64; 6] {
-        let (a, b, time) = (self.from, self.to, self.to.tau - self.from.tau);
+        let (a, b, time) = (self.from, self.to, self.time);
         let [start, slope, bend] = [a.zeta, a.momentum * time, a.force * (0.5 * time * time)];
         let place = b.zeta - start - slope - bend;
         let speed = b.momentum * time - slope - bend * 2.0;
@@ -114,7 +126,7 @@ impl Step<'_> {
     }
 }
 
-/// The surplus |f'|² - c² at a share of a step, and its derivative by the share.
+/// The surplus |f'|² - c² ρ² at a share of a step, and its derivative by the share.
 #[derive(Clone, Copy)]
 struct Node {
     share: f64,
@@ -135,7 +147,8 @@ impl Way<'_> {
     fn nodes(&self, shares: [f64; LANES]) -> [Node; LANES] {
         let Self { flow, powers, square, .. } = self;
         let [surplus, slope] = of_each!(&flow.map, map => {
-            let between = Between { map, powers, shares, square: *square };
+            let perturbation = flow.index_perturbation.as_deref();
+            let between = Between { map, perturbation, powers, shares, square: *square };
             side_by_side(between).unwrap_or_else(|it| it.with_simd(pulp::Scalar256b))
         });
         std::array::from_fn(|i| Node { share: shares[i], surplus: surplus[i], slope: slope[i] })
@@ -161,6 +174,7 @@ impl Way<'_> {
 /// The surplus and its derivative at four shares of a step.
 struct Between<'s, M> {
     map: &'s M,
+    perturbation: Option<&'s IndexPerturbation>,
     powers: &'s [Complex64; 6],
     shares: [f64; LANES],
     square: f64,
@@ -179,8 +193,15 @@ impl<M: LaneMap> WithSimd for Between<'_, M> {
             zeta = all(*power).plus_real(zeta, shares);
         }
         let jet = self.map.jets(zeta);
-        let surplus = jet.f1.norm_squared() - shares.all(self.square);
-        let rise = (jet.f1.conj() * jet.f2 * slope).re * 2.0;
+        let (stretched, rise) = (jet.f1.norm_squared(), (jet.f1.conj() * jet.f2 * slope).re * 2.0);
+        let Some(perturbation) = self.perturbation else {
+            return [(stretched - shares.all(self.square)).values(), rise.values()];
+        };
+        let seen = jet.f.values().map(|z| perturbation.look(z));
+        let (uneven, gradient) =
+            (shares.with(seen.map(|(square, _)| square)), jet.f.with(seen.map(|(_, g)| g)));
+        let climb = ((jet.f1 * slope).conj() * gradient).re;
+        let [surplus, rise] = [stretched - uneven * self.square, rise - climb * self.square];
         [surplus.values(), rise.values()]
     }
 }

@@ -274,7 +274,7 @@ impl ConformalFlow {
 
     /// As [`Self::advance_from`], up to four rays at once, which takes hardly longer than one. Each
     /// end is what it would be alone. The ends say what pulses take, too, to within `pulses` (cm, or 1e-7), if
-    /// that is given and the medium is not uneven: see [`Self::causal_group_path`].
+    /// that is given: at the least dispersion that causality allows the group index is n or 1/n, whichever is larger.
     pub fn advance_four(
         &self,
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
@@ -282,8 +282,8 @@ impl ConformalFlow {
         pulses: Option<f64>,
     ) -> [Option<Result<ConformalEnd, FlowError>>; LANES] {
         let mut packet = match pulses {
-            Some(to) if !self.is_uneven() => RayPacket::with_pulses(self, starts, tolerance, to),
-            _ => RayPacket::new(self, starts, tolerance),
+            Some(to) => RayPacket::with_pulses(self, starts, tolerance, to),
+            None => RayPacket::new(self, starts, tolerance),
         };
         while packet.moves(self) {}
         std::array::from_fn(|i| {

@@ -1,18 +1,14 @@
-//! Points along a ray, for drawings and for what a pulse takes.
+//! Points along a ray, for drawings.
 
 use super::points::Point;
 use super::ray_packet::RayPacket;
 use super::{ConformalFlow, FlowError, VirtualPoint};
 use crate::propagation::PathPoint;
-use crate::propagation::group_path::{Integrand, NODES, integral_along};
 use glam::DVec3;
 use num_complex::Complex64;
 
 /// Points per length over which the map varies.
 const DENSITY: f64 = 24.0;
-
-/// The fewest of them between which the way is Hermite's cubic.
-const LEAST_DENSITY: f64 = 4.0;
 
 impl ConformalFlow {
     /// Points along the ray that [`Self::advance_from`] follows, from its start to its end, close
@@ -49,14 +45,6 @@ impl ConformalFlow {
         }
         let way = self.waypoints(start, wave_vector, tolerance, spacing)?;
         Ok(way.into_iter().map(|at| point(at.jet.f, at.z, at.tau)).collect())
-    }
-
-    /// How far apart points of a way may be for Hermite's cubic, which is of the fourth order, to follow it to within a
-    /// tolerance, cm.
-    fn spacing(&self, tolerance: f64) -> f64 {
-        let scale = self.map.scale();
-        let share = 2.0 * (tolerance / scale).sqrt().sqrt();
-        scale * share.clamp(1.0 / DENSITY, 1.0 / LEAST_DENSITY)
     }
 
     /// Points of a ray from its start to its end, no farther apart than `spacing`, cm.
@@ -110,51 +98,5 @@ impl ConformalFlow {
         way.retain(|point| point.tau < end.tau);
         way.push(end);
         Ok(way)
-    }
-
-    /// The speed of light times the time that a pulse takes on the way of [`Self::advance_from`],
-    /// cm, to within about `tolerance` (cm), at the least dispersion that causality allows: the
-    /// group index is n or 1/n, whichever is larger.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::advance_from`].
-    pub fn causal_group_path(
-        &self,
-        start: &VirtualPoint,
-        wave_vector: DVec3,
-        tolerance: f64,
-    ) -> Result<f64, FlowError> {
-        let speed = self.index_scale * self.index_scale;
-        let over = |ways: &dyn Fn(f64) -> (Complex64, f64), tolerance: f64| {
-            let panel = |shares: [f64; NODES]| {
-                let points = shares.map(ways);
-                let ratio = |(zeta, _): (Complex64, f64)| {
-                    self.index_at(&self.map.jet(zeta)).powi(-2).max(1.0)
-                };
-                (points.map(ratio), points.map(|(_, tau)| speed * tau))
-            };
-            let sides = |share: f64| u8::from(self.index_at(&self.map.jet(ways(share).0)) > 1.0);
-            integral_along(&Integrand { panel: &panel, sides: &sides }, tolerance)
-        };
-        if wave_vector.z == 0.0 && !self.is_uneven() {
-            let end = self.advance_from(start, wave_vector, tolerance)?;
-            let (from, to) = (start.virtual_position, end.virtual_point.virtual_position);
-            let tau = end.optical_path / speed;
-            return Ok(over(&|share| (from + (to - from) * share, tau * share), tolerance));
-        }
-        let way = self.waypoints(start, wave_vector, tolerance, self.spacing(tolerance))?;
-        let pieces = way.len() as f64;
-        let piece = |ends: &[Point]| {
-            // Hermite's cubic; the way is nearly straight.
-            let ([a, b], time) = ([&ends[0], &ends[1]], ends[1].tau - ends[0].tau);
-            let at = |s: f64| {
-                let (over, left) = (s * s * (3.0 - 2.0 * s), 1.0 - s);
-                let bend = (a.momentum * left - b.momentum * s) * (s * left * time);
-                (a.zeta + (b.zeta - a.zeta) * over + bend, a.tau + time * s)
-            };
-            over(&at, tolerance / pieces)
-        };
-        Ok(way.windows(2).map(piece).sum())
     }
 }

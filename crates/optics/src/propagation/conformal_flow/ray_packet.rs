@@ -192,7 +192,7 @@ impl RayPacket {
         }
     }
 
-    /// The same where it is worked out, too, what pulses take, to within `to`, cm; the medium is that of its map.
+    /// The same where it is worked out, too, what pulses take, to within `to`, cm.
     pub fn with_pulses(
         flow: &ConformalFlow,
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
@@ -208,12 +208,13 @@ impl RayPacket {
         packet
     }
 
-    /// Puts a ray where its move has led.
-    fn arrive(&mut self, flow: &ConformalFlow, i: usize) {
+    /// Puts a ray where its move by `length` has led.
+    fn arrive(&mut self, flow: &ConformalFlow, i: usize, length: f64) {
         if let Some(lateness) = &mut self.states[i].lateness {
             let (from, to) = (self.here.at(i), self.result.end.at(i));
             let p_z = self.controls[i].p_z;
-            *lateness += Step { flow, from: &from, to: &to, p_z }.lateness(&self.pulses);
+            let step = Step { flow, from: &from, to: &to, time: length, p_z };
+            *lateness += step.lateness(&self.pulses);
         }
         self.here.take(i, &self.result.end);
     }
@@ -253,7 +254,7 @@ impl RayPacket {
         match self.states[i].status {
             RayStatus::Stepping(length) => self.stepped(flow, i, length),
             RayStatus::RefiningRoot(mut refinement) => {
-                self.arrive(flow, i);
+                self.arrive(flow, i, refinement.ahead);
                 let found = refinement.check(&self.here.at(i), &flow.events, self.controls[i].p_z);
                 self.states[i].status = match found {
                     RootStatus::Continue => RayStatus::RefiningRoot(refinement),
@@ -292,7 +293,7 @@ impl RayPacket {
         };
         match crossing {
             Crossing::None => {
-                self.arrive(flow, i);
+                self.arrive(flow, i, length);
                 self.go_on(flow, i);
             }
             Crossing::Unclear { share } => ray.status = RayStatus::Stepping(share * length),
@@ -301,7 +302,7 @@ impl RayPacket {
                 let ahead = if share < 0.5 {
                     share * length
                 } else {
-                    self.arrive(flow, i);
+                    self.arrive(flow, i, length);
                     (share - 1.0) * length
                 };
                 let root = RootRefinement { ahead, event, reach: length, corrections: 0 };
