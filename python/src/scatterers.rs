@@ -178,36 +178,50 @@ struct Columns<T> {
 
 impl<T: Real> Columns<T> {
     fn of(rows: &[Scattered], every: bool, want_fields: bool) -> Self {
-        let real = |of: fn(&Scattered) -> f64| -> Vec<T> {
-            rows.iter().map(|row| T::of(of(row))).collect()
+        fn room<C>(count: usize) -> Vec<C> {
+            Vec::with_capacity(count)
+        }
+        let count = rows.len();
+        let mut columns = Self {
+            ray: room(if every { count } else { 0 }),
+            status: room(count),
+            straight: room(count),
+            position: room(3 * count),
+            direction: room(3 * count),
+            weight: room(count),
+            probability: room(count),
+            transmitted: room(count),
+            pruned: room(count),
+            optical_path: room(count),
+            path: room(count),
+            body: room(count),
+            fields: room(if want_fields { 6 * count } else { 0 }),
         };
-        let vectors = |of: fn(&Scattered) -> DVec3| -> Vec<T> {
-            rows.iter().flat_map(|row| of(row).to_array().map(T::of)).collect()
-        };
-        let body = |row: &Scattered| match row.status {
-            RayStatus::Ended => i32::from(row.body),
-            _ => -1,
-        };
-        let numbered = if every { rows } else { &[] };
-        let with_fields = if want_fields { rows } else { &[] };
-        Self {
-            ray: numbered.iter().map(|row| row.ray).collect(),
-            status: rows.iter().map(|row| row.status as u8).collect(),
-            straight: rows.iter().map(|row| row.straight).collect(),
-            position: vectors(|row| row.position),
-            direction: vectors(|row| row.direction),
-            weight: real(|row| row.weight),
-            probability: real(|row| row.probability),
-            transmitted: real(|row| row.transmitted),
-            pruned: real(|row| row.pruned),
-            optical_path: real(|row| row.optical_path),
-            path: rows.iter().map(|row| row.path).collect(),
-            body: rows.iter().map(body).collect(),
-            fields: with_fields
-                .iter()
-                .flat_map(|row| row.electric.map(|field| field.components()))
-                .flatten()
-                .collect(),
+        // Row by row: a row is longer than a line of the processor's memory.
+        for row in rows {
+            columns.push(row, every, want_fields);
+        }
+        columns
+    }
+
+    #[inline]
+    fn push(&mut self, row: &Scattered, every: bool, want_fields: bool) {
+        if every {
+            self.ray.push(row.ray);
+        }
+        self.status.push(row.status as u8);
+        self.straight.push(row.straight);
+        self.position.extend_from_slice(&row.position.to_array().map(T::of));
+        self.direction.extend_from_slice(&row.direction.to_array().map(T::of));
+        self.weight.push(T::of(row.weight));
+        self.probability.push(T::of(row.probability));
+        self.transmitted.push(T::of(row.transmitted));
+        self.pruned.push(T::of(row.pruned));
+        self.optical_path.push(T::of(row.optical_path));
+        self.path.push(row.path);
+        self.body.push(if row.status == RayStatus::Ended { i32::from(row.body) } else { -1 });
+        if want_fields {
+            self.fields.extend(row.electric.iter().flat_map(|field| field.components()));
         }
     }
 }

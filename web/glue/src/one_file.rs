@@ -35,7 +35,7 @@ pub fn write(folder: &Path, file: &Path) -> io::Result<()> {
     let worker = format!("{}\n{}", read("cloakroom.js")?, read("worker.js")?);
     let page: String = read("index.html")?
         .lines()
-        .filter(|line| !line.contains("modulepreload"))
+        .filter(|line| !line.contains("modulepreload") && !line.contains("src=\"line.js\""))
         .map(|line| match line.trim() {
             "<link rel=\"stylesheet\" href=\"style.css\">" => {
                 Ok(format!("<style>\n{}</style>\n", read("style.css")?))

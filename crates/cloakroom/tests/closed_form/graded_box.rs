@@ -42,7 +42,7 @@ fn the_wave_vector_across_the_gradient_is_kept() {
             let wave_vector = direction * (1.69 + gradient.dot(position)).sqrt();
             let mode = ModeKind::Shared;
             let ray = InnerRay { position, wave_vector, direction, mode, virtual_point: None };
-            let end = structure.regions[0].advance(&ray, 1e-9).unwrap();
+            let end = structure.regions[0].advance(&ray, 1e-9, None).unwrap();
             // p' = g/2: p × g stays, and p² - g·r is that of the middle.
             let turned = (end.wave_vector - wave_vector).cross(gradient);
             assert!(turned.length() < 1e-14);

@@ -250,6 +250,14 @@ impl Batch<'_> {
         outcome: &Outcome<2>,
         scattered: &mut Vec<Scattered>,
     ) {
+        if let [leaf] = leaves
+            && !leaf.met_device
+            && leaf.total_power() > 0.0
+        {
+            let missed = unchanged(number, &ray.launch, RayStatus::Missed);
+            scattered.push(Scattered { straight: true, weight: 1.0, transmitted: 1.0, ..missed });
+            return;
+        }
         let mean = |of: &[f64; 2]| 0.5 * (of[0] + of[1]);
         let pruned = drawn.map_or(mean(&outcome.pruned), |drawn| drawn.pruned);
         if leaves.iter().all(|leaf| mean(&leaf.power) <= 0.0) {
@@ -266,10 +274,6 @@ impl Batch<'_> {
         let transmitted =
             leaves.iter().filter(|leaf| straight(leaf)).map(weight).sum::<f64>() + 0.0;
         let of_leaf = |leaf: &Leaf<2>| {
-            if !leaf.met_device {
-                let missed = unchanged(number, &ray.launch, RayStatus::Missed);
-                return Scattered { straight: true, weight: 1.0, transmitted: 1.0, ..missed };
-            }
             let body = leaf.body();
             self.placement.to_world(Scattered {
                 // Rays are numbered in 32 bits.

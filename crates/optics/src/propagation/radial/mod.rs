@@ -20,7 +20,6 @@ pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 use super::{PathEnd, PathPoint, first_way_out, group_path_along, turn_in_plane};
 pub use crate::geometry::Border;
 use crate::medium::{Medium, ModeKind, PrincipalMedium};
-use crate::transformation::RadialMap;
 use glam::DVec3;
 
 /// A radially symmetric medium.
@@ -113,17 +112,26 @@ impl RadialFlow {
             Self::Uniaxial(cylinder) => cylinder.turning_path(position, wave_vector, mode),
             _ => None,
         };
+        // Straight in virtual space.
+        let line = match self {
+            Self::Transformed(TransformedShell { map, .. }) => Some(map),
+            Self::Uniaxial(cylinder) if !cylinder.comes_to_core(mode) => Some(&cylinder.map),
+            _ => None,
+        };
+        let line = line.map(|map| (map, [position, end.position].map(|at| map.to_virtual(at))));
         move |share: f64| match (self, &turning) {
             (_, Some(path)) => path.way_point(position, share),
             (Self::Lens(lens), _) => lens.way_point(position, wave_vector, share),
             (Self::Transmuted(sphere), _) if mode == ModeKind::Extraordinary => {
                 sphere.way(position, wave_vector).point(share)
             }
-            (Self::Transformed(shell), _) => straight_in(&shell.map, position, &end, share),
-            (Self::Uniaxial(cylinder), _) if !cylinder.comes_to_core(mode) => {
-                straight_in(&cylinder.map, position, &end, share)
-            }
-            _ => straight(position, &end, share),
+            _ => PathPoint {
+                position: match line {
+                    Some((map, [start, stop])) => map.to_physical(start.lerp(stop, share)),
+                    None => position.lerp(end.position, share),
+                },
+                optical_path: share * end.optical_path,
+            },
         }
     }
 
@@ -181,20 +189,6 @@ impl RadialFlow {
             // In the transmuted sphere they run to the far side together.
             Self::Lens(_) | Self::Transmuted(_) | Self::Transformed(_) => None,
         }
-    }
-}
-
-/// A point of a straight way.
-fn straight(from: DVec3, end: &PathEnd<Border>, share: f64) -> PathPoint {
-    PathPoint { position: from.lerp(end.position, share), optical_path: share * end.optical_path }
-}
-
-/// A point of a way that is straight in virtual space.
-fn straight_in(map: &RadialMap, from: DVec3, end: &PathEnd<Border>, share: f64) -> PathPoint {
-    let [start, stop] = [from, end.position].map(|at| map.to_virtual(at));
-    PathPoint {
-        position: map.to_physical(start.lerp(stop, share)),
-        optical_path: share * end.optical_path,
     }
 }
 
