@@ -21,8 +21,8 @@ const $ = (id) => document.getElementById(id);
 const state = new State();
 let hello = null;
 let playing = false;
-// The point whose ray is followed: at first one that most devices stand before.
-let probing = [0.5, 0.47];
+// The point whose ray is followed: at first one before which most devices stand, whichever way they are turned.
+let probing = [0.5, 0.51];
 let wanted = 0;
 let settle = 0;
 // Whether the link was none, which is said until something else is wished.
@@ -48,6 +48,7 @@ function changed(moving = false) {
   damaged = false;
   filming?.stop();
   document.body.dataset.finished = "false";
+  document.body.dataset.old = "true";
   ageNumbers();
   showCaption();
   if (gallery.isOpen) return;
@@ -150,6 +151,7 @@ function received(about, image) {
     return;
   }
   picture.show(about, image, state);
+  if (about.id >= wanted || playing) document.body.dataset.old = "false";
   document.body.dataset.pictures = String(Number(document.body.dataset.pictures ?? 0) + 1);
   // Finer ones are made from then on.
   if (about.last && about.id === wanted && !about.finished) requestAnimationFrame(() => setTimeout(() => connection.seen(about.id)));
@@ -228,6 +230,9 @@ function failed({ id, message, key }) {
   if (id !== null && id < wanted) return;
   writeFault($("banner-text"), message, key);
   showBanner();
+  // What would be seen, if it could be, is not what is shown.
+  delete $("caption").dataset.text;
+  write($("caption"), say("see.fault"));
   $("progress").hidden = true;
 }
 
@@ -366,7 +371,11 @@ $("which").addEventListener("change", () => {
 });
 $("rotation").addEventListener("input", () => rotate($("rotation").valueAsNumber, true));
 $("rotation").addEventListener("change", () => rotate($("rotation").valueAsNumber, false));
-$("rotation-number").addEventListener("change", () => rotate($("rotation-number").valueAsNumber, false));
+$("rotation-number").addEventListener("change", () => {
+  const degrees = $("rotation-number").valueAsNumber;
+  if (Number.isFinite(degrees)) rotate(degrees, false);
+  else showRotation(state);
+});
 $("play").addEventListener("click", play);
 $("beside").addEventListener("change", () => setBeside($("beside").value));
 $("polarizer").addEventListener("change", () => {
@@ -514,9 +523,13 @@ function leaveGallery() {
   history.replaceState(null, "", state.address());
   changed();
 }
-$("cards-close").addEventListener("click", () => {
+function closeGallery() {
   leaveGallery();
   $("gallery").focus();
+}
+$("cards-close").addEventListener("click", closeGallery);
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape" && gallery.isOpen) closeGallery();
 });
 $("language").addEventListener("change", () => {
   setLanguage($("language").value);

@@ -29,7 +29,7 @@ const TABLE = {
   split: ["Split with", "Teilen mit"],
   "beside.nothing": ["nothing", "nichts"],
   "beside.bare": ["bare metal", "nur Metall"],
-  "beside.empty": ["empty view", "leerer Ansicht"],
+  "beside.empty": ["empty view", "leere Ansicht"],
   "beside.mirror": ["what it should look like", "wie es aussehen soll"],
   "side.cloak": ["cloak", "Tarnung"],
   "side.bare": ["bare metal", "nur Metall"],
@@ -163,7 +163,7 @@ const TABLE = {
 
   // Keys of devices; English says their own names.
   "key.material": ["material", "Material"],
-  "key.side": ["side", "Seite"],
+  "key.side": ["side", "Kantenlänge"],
   "key.kappa": ["kappa", "Kappa"],
   "key.rounded": ["rounded", "gerundete Werte"],
   "key.width": ["width", "Breite"],
@@ -367,8 +367,9 @@ const TABLE = {
   "see.polarizer.camera": ["One looks through a {p} polarizer.", "Man schaut durch einen {p} gestellten Polfilter."],
   "see.wavelength": ["The light has one color, of {n} nm.", "Das Licht hat eine Farbe, von {n} nm."],
   "see.map": ["The colors are no picture but a map: {map}.", "Die Farben sind kein Bild, sondern eine Karte: {map}."],
-  "see.flight": ["The photograph flashes once: only what arrives at that moment is bright.",
-    "Das Foto blitzt einmal auf: Hell ist nur, was in diesem Augenblick ankommt."],
+  "see.flight": ["The photograph flashes once: only what arrives at that moment is bright. A flash may come later than the crests of its waves, by which the numbers and the drawing count.",
+    "Das Foto blitzt einmal auf: Hell ist nur, was in diesem Augenblick ankommt. Ein Blitz kann später kommen als die Kämme seiner Wellen, nach denen Zahlen und Zeichnung gehen."],
+  "see.fault": ["The picture is the last one that could be made.", "Das Bild ist das letzte, das zu machen war."],
   "see.beside": ["Left of the divider: {left}.", "Links vom Teiler: {left}."],
 
   // The tour.
@@ -381,8 +382,8 @@ const TABLE = {
     "Das Metall ist noch da, aber vier Stücke darum, die Tarnung, führen Licht daran vorbei und zurück auf seine Linie. Man sieht nichts davon: mit dem Teiler vergleichen."],
   "tour.4": ["Turned by 10° the cloak betrays itself: it makes the bar look as thin as a sheet of metal. Edge-on a sheet is invisible; tilted it is a mirror, in which the shelf appears again.",
     "Um 10° gedreht verrät sich die Tarnung: Sie lässt den Stab so dünn aussehen wie ein Blech. Von der Kante ist ein Blech unsichtbar; gekippt ist es ein Spiegel, in dem das Regal noch einmal erscheint."],
-  "tour.5": ["A simpler cloak works for one polarization only: half of the light is led around, the other half draws the false picture. Take the polarizer away, and put it back.",
-    "Eine einfachere Tarnung wirkt nur für eine Polarisation: Die Hälfte des Lichts wird herumgeführt, die andere malt das falsche Bild. Den Polfilter weg- und wieder hinnehmen."],
+  "tour.5": ["A simpler cloak works for one polarization only: half of the light is led around, the other half draws the false picture, which the polarizer takes away, but for some of it far from the middle, where light comes slanted. Take the polarizer away, and put it back.",
+    "Eine einfachere Tarnung wirkt nur für eine Polarisation: Die Hälfte des Lichts wird herumgeführt, die andere malt das falsche Bild. Der Polfilter nimmt es weg, bis auf einen Rest abseits der Mitte, wo das Licht schräg kommt. Den Polfilter wegnehmen und wieder davorsetzen."],
   "tour.polarizer": ["Polarizer on or off", "Polfilter an oder aus"],
 
   // The glossary.

@@ -111,7 +111,8 @@ fn check_starts_inside(scene: &str, height: &dyn Fn(DVec3) -> f64) {
             mode: ModeKind::Shared,
             virtual_point: None,
         };
-        let end = placed.structure.regions[usize::from(region)].advance(&inner, 1e-9, None).unwrap();
+        let end =
+            placed.structure.regions[usize::from(region)].advance(&inner, 1e-9, None).unwrap();
         let end_there = placed.pose.to_world(end.position);
         let found = leaves(&assembly, &ray);
         let straight = found.iter().find(|leaf| leaf.position.distance(end_there) < 1e-9);

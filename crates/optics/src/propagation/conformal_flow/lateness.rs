@@ -160,7 +160,7 @@ impl Way<'_> {
         let width = to.share - from.share;
         let off = Cubic::between(from, to).middle() - middle.surplus;
         let halves = [(from, middle), (middle, to)];
-        if halvings == 0 || !(off.abs() * width > self.allowed) {
+        if halvings == 0 || off.is_nan() || off.abs() * width <= self.allowed {
             let part = |(a, b)| Cubic::between(a, b).positive_part(HALVINGS);
             return 0.5 * width * halves.map(part).iter().sum::<f64>();
         }
