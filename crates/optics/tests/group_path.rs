@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 use optics::geometry::Extent;
 use optics::medium::ModeKind;
 use optics::propagation::{
-    ConformalFlow, GridSpline, Half, IndexPerturbation, OpticAxis, PathPoint, RadialFlow,
-    TransformedShell, UniaxialCylinder,
+    ConformalEnd, ConformalFlow, GridSpline, Half, IndexPerturbation, OpticAxis, PathPoint,
+    RadialFlow, TransformedShell, UniaxialCylinder,
 };
 use optics::transformation::{
     ConformalMap, FlatMap, GratingMap, QuasiConformalMap, RadialMap, Symmetry,
@@ -229,9 +229,13 @@ fn what_a_pulse_takes_is_known_from_the_steps_of_its_way() {
             let p = way.normalize() * start.index;
             let to = |wanted: f64| {
                 let starts = [None, Some((start, p)), None, None];
-                let [_, end, ..] = flow.advance_four(&starts, 1e-6, Some(wanted));
-                let end = end.expect("a ray").expect("an end");
-                (end.group_path.expect("asked for"), end.optical_path)
+                let [with, without] = [Some(wanted), None].map(|pulses| {
+                    let [_, end, ..] = flow.advance_four(&starts, 1e-6, pulses);
+                    end.expect("a ray").expect("an end")
+                });
+                // The way is the same whether it is asked for or not.
+                assert_eq!(ConformalEnd { group_path: None, ..with }, without);
+                (with.group_path.expect("asked for"), with.optical_path)
             };
             let (exact, _) = to(1e-9);
             for wanted in [1e-3, 1e-4, 1e-6, 1e-7] {

@@ -130,6 +130,9 @@ const MAX_STEPS: u32 = 20_000;
 /// grow: a way that leads to the mirror is followed with this share of the tolerance.
 const MIRROR_TOLERANCE: f64 = 0.1;
 
+/// The way between the ends of steps must be so much better known than what a pulse takes on it.
+const ALONG: f64 = 0.02;
+
 /// How far (relative to the map's scale) a start may lie outside by rounding.
 const BORDER_SLACK: f64 = 1e-9;
 
@@ -281,14 +284,26 @@ impl ConformalFlow {
         tolerance: f64,
         pulses: Option<f64>,
     ) -> [Option<Result<ConformalEnd, FlowError>>; LANES] {
-        let mut packet = match pulses {
-            Some(to) => RayPacket::with_pulses(self, starts, tolerance, to),
-            None => RayPacket::new(self, starts, tolerance),
+        let arrived = |tolerance: f64| {
+            let mut packet = match pulses {
+                Some(to) => RayPacket::with_pulses(self, starts, tolerance, to),
+                None => RayPacket::new(self, starts, tolerance),
+            };
+            while packet.moves(self) {}
+            packet
         };
-        while packet.moves(self) {}
+        let packet = arrived(tolerance);
+        // A ray runs the same way whether its pulses are asked for or not.
+        let finer = pulses.map(|to| ALONG * to).filter(|finer| *finer < tolerance).map(arrived);
         std::array::from_fn(|i| {
             let (start, _) = starts[i].as_ref()?;
-            Some(packet.arrival(i).map(|arrival| self.end(start, &arrival)))
+            Some(packet.arrival(i).map(|mut arrival| {
+                let finer = finer.as_ref().and_then(|finer| finer.arrival(i).ok());
+                if let Some(finer) = finer.filter(|finer| finer.boundary == arrival.boundary) {
+                    arrival.lateness = finer.lateness;
+                }
+                self.end(start, &arrival)
+            }))
         })
     }
 

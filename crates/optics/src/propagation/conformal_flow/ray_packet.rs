@@ -18,9 +18,6 @@ const COASTING: f64 = 1e-4;
 /// How far beyond a border that is near to aim, as a share of the map's scale.
 const OVERSHOOT: f64 = 0.012;
 
-/// The way between the ends of steps must be so much better known than what a pulse takes on it.
-const ALONG: f64 = 0.02;
-
 /// Four rays on their way, or fewer: each goes where it would go alone.
 pub(super) struct RayPacket {
     rays: Rays,
@@ -199,7 +196,6 @@ impl RayPacket {
         tolerance: f64,
         to: f64,
     ) -> Self {
-        let tolerance = tolerance.min(ALONG * to);
         let mut packet = Self::new(flow, starts, tolerance);
         packet.pulses = Accuracy::new(flow, tolerance, to);
         for ray in &mut packet.states {
