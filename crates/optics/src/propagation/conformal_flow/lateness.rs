@@ -144,14 +144,20 @@ struct Way<'s> {
 }
 
 impl Way<'_> {
+    #[inline(never)]
     fn nodes(&self, shares: [f64; LANES]) -> [Node; LANES] {
-        let Self { flow, powers, square, .. } = self;
-        let [surplus, slope] = of_each!(&flow.map, map => {
-            let perturbation = flow.index_perturbation.as_deref();
-            let between = Between { map, perturbation, powers, shares, square: *square };
-            side_by_side(between).unwrap_or_else(|it| it.with_simd(pulp::Scalar256b))
-        });
+        let map = &self.flow.map;
+        // Portable code is one for all maps.
+        let with_instructions = of_each!(map, map => side_by_side(self.between(map, shares)).ok());
+        let [surplus, slope] = with_instructions
+            .unwrap_or_else(|| self.between(map, shares).with_simd(pulp::Scalar256b));
         std::array::from_fn(|i| Node { share: shares[i], surplus: surplus[i], slope: slope[i] })
+    }
+
+    fn between<'m, M>(&'m self, map: &'m M, shares: [f64; LANES]) -> Between<'m, M> {
+        let Self { flow, powers, square, .. } = self;
+        let perturbation = flow.index_perturbation.as_deref();
+        Between { map, perturbation, powers, shares, square: *square }
     }
 
     /// The integral of what is positive of the surplus over two pieces: by two cubics if one is nearly as good, or by

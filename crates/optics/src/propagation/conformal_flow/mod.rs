@@ -284,14 +284,7 @@ impl ConformalFlow {
         tolerance: f64,
         pulses: Option<f64>,
     ) -> [Option<Result<ConformalEnd, FlowError>>; LANES] {
-        let arrived = |tolerance: f64| {
-            let mut packet = match pulses {
-                Some(to) => RayPacket::with_pulses(self, starts, tolerance, to),
-                None => RayPacket::new(self, starts, tolerance),
-            };
-            while packet.moves(self) {}
-            packet
-        };
+        let arrived = |tolerance: f64| RayPacket::arrived(self, starts, tolerance, pulses);
         let packet = arrived(tolerance);
         // A ray runs the same way whether its pulses are asked for or not.
         let finer = pulses.map(|to| ALONG * to).filter(|finer| *finer < tolerance).map(arrived);

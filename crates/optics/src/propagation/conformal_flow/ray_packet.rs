@@ -189,18 +189,22 @@ impl RayPacket {
         }
     }
 
-    /// The same where it is worked out, too, what pulses take, to within `to`, cm.
-    pub fn with_pulses(
+    /// The same at their ends, where it is worked out, too, what pulses take, to within `pulses`, cm, if that is given.
+    #[inline(never)]
+    pub fn arrived(
         flow: &ConformalFlow,
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
-        to: f64,
+        pulses: Option<f64>,
     ) -> Self {
         let mut packet = Self::new(flow, starts, tolerance);
-        packet.pulses = Accuracy::new(flow, tolerance, to);
-        for ray in &mut packet.states {
-            ray.lateness = Some(0.0);
+        if let Some(to) = pulses {
+            packet.pulses = Accuracy::new(flow, tolerance, to);
+            for ray in &mut packet.states {
+                ray.lateness = Some(0.0);
+            }
         }
+        while packet.moves(flow) {}
         packet
     }
 
