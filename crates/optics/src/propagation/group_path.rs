@@ -70,8 +70,24 @@ impl<const N: usize> Panel<N> {
 /// Halvings that find a kink between two points: twice the last is a difference of ratios that nobody sees.
 const KINK_HALVINGS: u32 = 30;
 
-/// Closer to the end of a panel than this share of it, a kink is at the end.
+/// Closer to the end of a piece of a way than this share of it, a kink is at the end.
 const AT_END: f64 = 1e-6;
+
+/// Where within a piece of a way, just behind it, a kink is that the side it is on tells, from one point and another
+/// between which that changes; `None` if it is at an end of the piece.
+pub(super) fn kink_inside<S: PartialEq>(
+    [from, to]: [f64; 2],
+    [mut low, mut high]: [f64; 2],
+    side: impl Fn(f64) -> S,
+) -> Option<f64> {
+    let first = side(low);
+    for _ in 0..KINK_HALVINGS {
+        let middle = 0.5 * (low + high);
+        *(if side(middle) == first { &mut low } else { &mut high }) = middle;
+    }
+    let margin = AT_END * (to - from);
+    Some(high).filter(|kink| kink - from > margin && to - kink > margin)
+}
 
 /// What is integrated along a way, by shares of it between 0 and 1.
 struct Integrand<'a> {
@@ -84,17 +100,10 @@ struct Integrand<'a> {
 impl Integrand<'_> {
     /// Where a panel is cut: at a kink if it has one, else in the middle.
     fn cut(&self, [from, to]: [f64; 2], shares: [f64; NODES]) -> f64 {
-        let ends = shares.map(|share| (share, (self.sides)(share)));
-        let kink = ends.windows(2).find(|two| two[0].1 != two[1].1).map(|two| {
-            let ([mut low, mut high], side) = ([two[0].0, two[1].0], two[0].1);
-            for _ in 0..KINK_HALVINGS {
-                let middle = 0.5 * (low + high);
-                *(if (self.sides)(middle) == side { &mut low } else { &mut high }) = middle;
-            }
-            0.5 * (low + high)
-        });
-        let margin = AT_END * (to - from);
-        kink.filter(|kink| kink - from > margin && to - kink > margin).unwrap_or(0.5 * (from + to))
+        let sides = shares.map(|share| (share, (self.sides)(share)));
+        let change = sides.windows(2).find(|two| two[0].1 != two[1].1);
+        let kink = change.and_then(|two| kink_inside([from, to], [two[0].0, two[1].0], self.sides));
+        kink.unwrap_or(0.5 * (from + to))
     }
 }
 

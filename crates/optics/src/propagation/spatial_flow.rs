@@ -14,6 +14,7 @@
 //! turning with the axis, as holds where the medium varies little over λ/|n_e - n_o|. In isotropic
 //! media the field is carried parallel, de/ds = -(e·∇ln n) t (Rytov).
 
+use super::group_path::kink_inside;
 use super::radial::uniaxial_wave::{UniaxialPoint, transport};
 use super::runge_kutta::{predict, step, step_factor};
 use super::space_spline::{Look, SpaceSpline};
@@ -119,11 +120,8 @@ const PIECES: f64 = 96.0;
 /// sin² of the angle of p to the axis below which both waves are one.
 const ONE_WAVE: f64 = 1e-28;
 
-/// How often a step is cut at most where the group index has a kink, by how many halvings that is found, and closer
-/// to an end of the step than which share it is there already.
+/// How often a step is cut at most where the group index has a kink.
 const MOST_CUTS: u32 = 3;
-const KINK_HALVINGS: u32 = 30;
-const AT_END: f64 = 1e-6;
 
 /// What a medium is at a point.
 struct Local {
@@ -496,16 +494,8 @@ impl SpatialFlow {
             from + (to - from) * (share * share * (3.0 - 2.0 * share))
                 + (v * left - w * share) * (share * left * h)
         };
-        let side = sides(from);
-        if !to.is_finite() || sides(to) == side {
-            return None;
-        }
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..KINK_HALVINGS {
-            let middle = 0.5 * (low + high);
-            *(if sides(at(middle)) == side { &mut low } else { &mut high }) = middle;
-        }
-        Some(high).filter(|share| *share > AT_END && *share < 1.0 - AT_END)
+        let changes = to.is_finite() && sides(from) != sides(to);
+        changes.then(|| kink_inside([0.0, 1.0], [0.0, 1.0], |share| sides(at(share))))?
     }
 
     /// One over what a step may be off in each component.

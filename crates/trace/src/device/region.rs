@@ -1,8 +1,7 @@
 //! Regions of a device, each filled with one medium.
 
 use super::{
-    ClosedFormRegion, Coating, Convex, Dispersion, DispersiveMedium, DispersiveTensors, FarSide,
-    SpatialRegion,
+    ClosedFormRegion, Coating, Convex, DispersiveMedium, DispersiveTensors, FarSide, SpatialRegion,
 };
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::{Lens, Plane, Polyhedron};
@@ -213,17 +212,16 @@ impl Region {
         local.as_ref()
     }
 
-    /// The speed of light times the time that a pulse takes on the way of a ray to `end`, cm, to
-    /// within about `tolerance` (cm); `electric` is a field of the ray, of any size. NaN in media
-    /// that absorb, unless they are without dispersion.
+    /// The speed of light times the time that a pulse takes on the way of a ray to `end`, cm;
+    /// `electric` is a field of the ray, of any size. `pulses` is as for [`Region::advance`], but that media of one
+    /// group index or of a law of their own have that without it. NaN in media that absorb, if `pulses` is given.
     #[must_use]
     pub fn group_path(
         &self,
         ray: &InnerRay,
         electric: ComplexVector,
         end: &Passage,
-        dispersion: Dispersion,
-        tolerance: f64,
+        pulses: Option<f64>,
     ) -> f64 {
         let straight = (end.position - ray.position).length();
         if let Self::Homogeneous(HomogeneousRegion { group_index: Some(index), .. }) = self {
@@ -236,19 +234,16 @@ impl Region {
         if let Self::Homogeneous(HomogeneousRegion { law: Some(law), medium, .. }) = self {
             return by_law(medium, law);
         }
-        if dispersion == Dispersion::None {
+        let Some(tolerance) = pulses else {
             // Where the phase runs backwards a pulse does not.
             let backwards = straight.max(-end.optical_path);
             return if end.optical_path < 0.0 { backwards } else { end.optical_path };
-        }
+        };
         match self {
             Self::Homogeneous(HomogeneousRegion { least_dispersive, medium, .. }) => {
                 least_dispersive.as_ref().map_or(f64::NAN, |law| by_law(medium, law))
             }
-            Self::Conformal(region) if region.loss_tangent == 0.0 => {
-                end.group_path.unwrap_or(f64::NAN)
-            }
-            Self::Conformal(_) => f64::NAN,
+            Self::Conformal(_) => end.group_path.unwrap_or(f64::NAN),
             Self::Radial(region) if region.inner == FarSide::Outside && region.turns_back(ray) => {
                 0.0
             }
@@ -270,7 +265,7 @@ impl Region {
         path: &[PathPoint],
         mode: ModeKind,
         whole: f64,
-        dispersion: Dispersion,
+        disperses: bool,
     ) -> Vec<f64> {
         let piece = |pair: &[PathPoint]| {
             let way = pair[1].position - pair[0].position;
@@ -279,7 +274,7 @@ impl Region {
             if self.is_homogeneous() || length == 0.0 {
                 return length;
             }
-            if dispersion == Dispersion::None {
+            if !disperses {
                 return optical;
             }
             let ray = way / length;
@@ -328,8 +323,9 @@ impl Region {
 
     /// Follows a ray from a point of the region or its border to the next surface.
     ///
-    /// `tolerance` (cm) bounds the error of position and optical path where the way is integrated; with `pulses` the
-    /// passage says what a pulse takes, too, to within so many cm, where the way tells that.
+    /// `tolerance` (cm) bounds the error of position and optical path where the way is integrated. `pulses` is to
+    /// within how much (cm) it is to be known what a pulse takes, `None` if that is as the phase or not asked for; the
+    /// passage says it where the way tells it.
     ///
     /// # Errors
     ///
@@ -555,6 +551,8 @@ impl ConformalRegion {
         pulses: Option<f64>,
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         let starts = rays.map(|ray| Some((self.start(&ray?)?, ray?.wave_vector)));
+        // Where light is absorbed there is no such time.
+        let pulses = pulses.filter(|_| self.loss_tangent == 0.0);
         let ends = self.flow.advance_four(&starts, tolerance, pulses);
         std::array::from_fn(|i| {
             let ray = rays[i].as_ref()?;

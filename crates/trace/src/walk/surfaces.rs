@@ -248,18 +248,18 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     {
         let region = self.assembly.device(number).region(region_number);
         let way = passage.position - branch.position;
+        let pulses = self.pulses(number);
         let group = if self.wants_group_path(passage.optical_path) {
-            let dispersion = self.assembly.device(number).dispersion;
             let (ray, field) = (branch.inner_ray(), branch.strongest_field());
-            Some(region.group_path(&ray, field, passage, dispersion, self.pulse_tolerance()))
+            Some(region.group_path(&ray, field, passage, pulses))
         } else {
             None
         };
         self.recorder.record(|| {
             let ray = branch.inner_ray();
             let path = region.path(&ray, passage, self.limits.tolerance);
-            let dispersion = self.assembly.device(number).dispersion;
-            let pulse = group.map(|group| region.group_paths(&path, ray.mode, group, dispersion));
+            let pulse =
+                group.map(|group| region.group_paths(&path, ray.mode, group, pulses.is_some()));
             PathSegment {
                 branch: branch.path,
                 power: branch.power,

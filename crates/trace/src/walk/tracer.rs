@@ -195,11 +195,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         Self { group_delays: true, pulse_tolerance: tolerance, ..self }
     }
 
-    /// To within how much (cm) it is worked out what a pulse takes.
-    pub(super) fn pulse_tolerance(&self) -> f64 {
-        self.pulse_tolerance.max(self.limits.tolerance)
-    }
-
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
     /// and the account of the rest of the power. A ray that starts in a medium is launched in those
     /// waves of it whose rays run along its direction; one that starts in metal is lost.
@@ -302,19 +297,23 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         rays: &[Option<InnerRay>; 4],
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         let region = self.assembly.device(device).region(region);
-        region.advance_four(rays, self.limits.tolerance, self.pulses(device))
+        region.advance_four(rays, self.limits.tolerance, self.asked_pulses(device))
     }
 
     /// Takes a ray through a region: see [`Region::advance`](crate::device::Region::advance).
     fn advance(&self, (device, region): (u16, u16), ray: &InnerRay) -> Result<Passage, NoPassage> {
         let region = self.assembly.device(device).region(region);
-        region.advance(ray, self.limits.tolerance, self.pulses(device))
+        region.advance(ray, self.limits.tolerance, self.asked_pulses(device))
     }
 
     /// To within how much it is worked out what pulses take in a device, if that is another time than of the phase.
-    fn pulses(&self, device: u16) -> Option<f64> {
+    pub(super) fn pulses(&self, device: u16) -> Option<f64> {
         let disperses = self.assembly.device(device).dispersion != Dispersion::None;
-        (self.group_delays && disperses).then(|| self.pulse_tolerance())
+        disperses.then(|| self.pulse_tolerance.max(self.limits.tolerance))
+    }
+
+    fn asked_pulses(&self, device: u16) -> Option<f64> {
+        if self.group_delays { self.pulses(device) } else { None }
     }
 
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {

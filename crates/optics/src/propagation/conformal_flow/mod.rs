@@ -284,16 +284,19 @@ impl ConformalFlow {
         tolerance: f64,
         pulses: Option<f64>,
     ) -> [Option<Result<ConformalEnd, FlowError>>; LANES] {
-        let arrived = |tolerance: f64| RayPacket::arrived(self, starts, tolerance, pulses);
-        let packet = arrived(tolerance);
+        let arrived = |tolerance, pulses| RayPacket::arrived(self, starts, tolerance, pulses);
+        let finer = pulses.map(|to| ALONG * to).filter(|finer| *finer < tolerance);
         // A ray runs the same way whether its pulses are asked for or not.
-        let finer = pulses.map(|to| ALONG * to).filter(|finer| *finer < tolerance).map(arrived);
+        let packet = arrived(tolerance, pulses.filter(|_| finer.is_none()));
+        let late = finer.map(|finer| arrived(finer, pulses));
         std::array::from_fn(|i| {
             let (start, _) = starts[i].as_ref()?;
             Some(packet.arrival(i).map(|mut arrival| {
-                let finer = finer.as_ref().and_then(|finer| finer.arrival(i).ok());
-                if let Some(finer) = finer.filter(|finer| finer.boundary == arrival.boundary) {
-                    arrival.lateness = finer.lateness;
+                if let Some(late) = &late {
+                    let late = late.arrival(i).ok();
+                    let late = late.filter(|late| late.boundary == arrival.boundary);
+                    let own = || arrived(tolerance, pulses).arrival(i).ok();
+                    arrival.lateness = late.or_else(own).and_then(|late| late.lateness);
                 }
                 self.end(start, &arrival)
             }))
