@@ -19,11 +19,13 @@ const GROUPS: [usize; 8] = [1, 2, 3, 4, 6, 8, 12, BINS];
 const FRINGE_BINS_NM: [f64; 2] = [20.0, 10.0];
 
 /// A lamp's light in groups of wavelengths, and the wavelengths at which rays are traced: what these bring is
-/// interpolated between them by a polynomial of the wave number.
+/// interpolated between them by a polynomial of [a power](ABSCISSA) of the wave number.
 #[derive(Clone, Debug)]
 pub(crate) struct Bands {
     /// The wavelengths, nm: the nodes.
     pub nodes_nm: Vec<f64>,
+    /// That next to the middle of the light.
+    pub middle_node: usize,
     /// From coarse to fine, all wavelengths together, in two groups, and so on to the bins; lines each by itself.
     pub levels: Vec<Vec<Group>>,
     /// The bins within which light interferes, wide and narrow ones.
@@ -151,7 +153,8 @@ impl Bands {
             light(held.map(|sample| (1.0, *sample)))
         };
         let cells = (0..nodes_nm.len()).map(cell).collect();
-        Self { levels, fringes, cells, nodes_nm }
+        let middle = levels[0].last().and_then(|group| nearest(group.nm)).unwrap_or(0);
+        Self { levels, fringes, cells, middle_node: middle, nodes_nm }
     }
 }
 
@@ -191,22 +194,30 @@ fn light(held: impl Iterator<Item = (f64, Sample)>) -> Light {
     Light { color, bins }
 }
 
-/// Chebyshev's nodes in the wave number over a range of wavelengths (nm), the longest first.
+/// Polynomials that interpolate between wavelengths are of the wave number to this power: in the wave number itself what
+/// resonates in the ultraviolet is nearer, in its square what does in the infrared. The media of the catalogue take as few
+/// wavelengths as with any other power from 1 to 2, SF11 four where the wave number takes five.
+const ABSCISSA: f64 = 1.5;
+
+fn abscissa(nm: f64) -> f64 {
+    nm.powf(-ABSCISSA)
+}
+
+/// Chebyshev's nodes over a range of wavelengths (nm), the longest first.
 pub(crate) fn chebyshev_nodes(count: usize, [shortest, longest]: [f64; 2]) -> Vec<f64> {
-    let [low, high] = [1.0 / longest, 1.0 / shortest];
+    let [low, high] = [longest, shortest].map(abscissa);
     let node = |i: usize| {
         let angle = std::f64::consts::PI * (i as f64 + 0.5) / count as f64;
-        1.0 / (0.5 * (low + high) - 0.5 * (high - low) * angle.cos())
+        (0.5 * (low + high) - 0.5 * (high - low) * angle.cos()).powf(-1.0 / ABSCISSA)
     };
     (0..count).map(node).collect()
 }
 
-/// The weights of nodes (wavelengths, nm) in the polynomial of the wave number through them, at a
-/// wavelength.
+/// The weights of nodes (wavelengths, nm) in the polynomial through them, at a wavelength.
 pub(crate) fn weights(nodes_nm: &[f64], nm: f64) -> Vec<f64> {
-    let x = 1.0 / nm;
-    let at = |i: usize| 1.0 / nodes_nm[i];
-    let others = |i: usize| (0..nodes_nm.len()).filter(move |j| *j != i);
-    let weight = |i: usize| others(i).map(|j| (x - at(j)) / (at(i) - at(j))).product();
+    let x = abscissa(nm);
+    let nodes: Vec<f64> = nodes_nm.iter().copied().map(abscissa).collect();
+    let others = |i: usize| nodes.iter().enumerate().filter(move |(j, _)| *j != i);
+    let weight = |i: usize| others(i).map(|(_, at)| (x - at) / (nodes[i] - at)).product();
     (0..nodes_nm.len()).map(weight).collect()
 }

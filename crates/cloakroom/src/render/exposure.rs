@@ -147,7 +147,20 @@ pub(super) struct Sight {
     pub steps: [DVec3; 2],
 }
 
-/// Where a leaf of a ray looks, given the ray and its neighbours across and down.
+/// Where a leaf looks.
+pub(super) fn place<const N: usize>(prepared: &PreparedScene<'_>, leaf: &Leaf<N>) -> (Look, DVec3) {
+    match (leaf.body(), leaf.distance_to(&prepared.screen)) {
+        (Some(body), _) => (Look::Body(body), leaf.position),
+        (None, Some(distance)) => {
+            let place = prepared.screen.image_position(leaf.direction);
+            let [u, v] = place(leaf.position + leaf.direction * distance);
+            (Look::Photograph, DVec3::new(u, v, 0.0))
+        }
+        (None, None) => (Look::Surroundings, leaf.direction),
+    }
+}
+
+/// Where a leaf of a ray looks and how far from there its neighbours do, given the ray and those across and down.
 pub(super) fn look<const N: usize>(
     prepared: &PreparedScene<'_>,
     [here, across, down]: [&Traced<'_, N>; 3],
@@ -158,34 +171,29 @@ pub(super) fn look<const N: usize>(
         [across, down].map(|neighbour| Neighbour { here, number, leaf, neighbour, alone: None });
     let lines =
         || beside.each_ref().map(|beside| beside.twin_line().unwrap_or_else(|| beside.moved()));
-    match (leaf.body(), leaf.distance_to(&prepared.screen)) {
-        (Some(body), _) => {
+    let (look, at) = place(prepared, leaf);
+    let steps = match look {
+        Look::Body(body) => {
             let normal = prepared.body_surface(body).and_then(|body| body.normal(leaf.position));
-            let steps = normal.map_or([DVec3::ZERO; 2], |normal| {
+            normal.map_or([DVec3::ZERO; 2], |normal| {
                 lines().map(|line| step_on_plane(line, leaf.position, normal))
-            });
-            (Look::Body(body), Sight { at: leaf.position, steps })
+            })
         }
-        (None, Some(distance)) => {
+        Look::Photograph => {
             let screen = &prepared.screen;
             let place = screen.image_position(leaf.direction);
-            let here = place(leaf.position + leaf.direction * distance);
             let on_screen = |line: &Line| {
                 let t = screen.distance_along(line.origin, line.direction);
                 t.is_finite().then(|| place(line.origin + line.direction * t))
             };
-            let vector = |[u, v]: [f64; 2]| DVec3::new(u, v, 0.0);
-            let steps = footprint(on_screen, here, &beside).map(vector);
-            (Look::Photograph, Sight { at: vector(here), steps })
+            footprint(on_screen, [at.x, at.y], &beside).map(|[u, v]| DVec3::new(u, v, 0.0))
         }
-        (None, None) => {
-            let steps = match prepared.surroundings {
-                Surroundings::Color(_) => [DVec3::ZERO; 2],
-                Surroundings::Image(_) => lines().map(|line| line.direction - leaf.direction),
-            };
-            (Look::Surroundings, Sight { at: leaf.direction, steps })
-        }
-    }
+        Look::Surroundings => match prepared.surroundings {
+            Surroundings::Color(_) => [DVec3::ZERO; 2],
+            Surroundings::Image(_) => lines().map(|line| line.direction - leaf.direction),
+        },
+    };
+    (look, Sight { at, steps })
 }
 
 /// The light that is seen there, through a filter as wide as these steps, and drawn out further by a `spread`.

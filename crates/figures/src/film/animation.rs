@@ -1,10 +1,11 @@
-//! The frames of a film, rendered one after the other.
+//! The frames of a film, rendered one by one.
 
 use super::FrameFolder;
 use crate::{Dimension, IllustrationError, ScalarMap, shown};
 use cloakroom::output::{OutputError, write_png};
 use cloakroom::render::{ChannelSet, PreparedScene, RenderError, Supervision, render};
 use cloakroom::scene::PictureSettings;
+use cloakroom::split_mix::mix;
 use cloakroom::trace::TraceStats;
 use std::ffi::OsString;
 use std::ops::Range;
@@ -38,6 +39,9 @@ where
     E: From<RenderError> + From<IllustrationError> + From<OutputError>,
 {
     let mut done = RenderedFrames::default();
+    let mut numbers: Vec<usize> = numbers.collect();
+    // In no order, so that what is done says how long the rest will take.
+    numbers.sort_by_cached_key(|number| mix(*number as u64));
     for number in numbers {
         let prepared = prepared(number)?;
         let metadata = frame_metadata(&prepared, map_range);

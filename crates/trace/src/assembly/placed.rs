@@ -117,16 +117,16 @@ impl Placed {
 
     /// Its films in the world's frame.
     pub(super) fn films_in_world(&self) -> Vec<Vec<FilmLayer>> {
-        let turned = |layer: &FilmLayer| {
-            let isotropic = layer.medium.is_isotropic();
-            let turned = || self.medium_in_world(&layer.medium);
-            FilmLayer { medium: if isotropic { layer.medium } else { turned() }, ..*layer }
-        };
+        let turned =
+            |layer: &FilmLayer| FilmLayer { medium: self.medium_in_world(&layer.medium), ..*layer };
         self.structure.films.iter().map(|film| film.iter().map(turned).collect()).collect()
     }
 
     /// A medium of the device's frame in the world's.
     pub(crate) fn medium_in_world(&self, medium: &Medium) -> Medium {
+        if medium.is_isotropic() {
+            return *medium;
+        }
         let (permittivity, permeability) = medium.tensors();
         let turn = self.pose.rotation();
         // A medium stays one when it is turned.

@@ -112,12 +112,11 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             }
             Met::Device(ahead) => ahead,
         };
-        let turned = (!medium.is_isotropic()).then(|| device.medium_in_world(medium));
+        let medium = device.medium_in_world(medium);
         branch.leave_frame(&device.pose);
         let onward = device.pose.vector_to_world(passage.outward);
         let event = Event::Face { device: number, region, face: passage.face }.shared();
-        let medium = turned.as_ref().unwrap_or(medium);
-        self.cross(branch, medium, passage.coating, ahead, (onward, event))
+        self.cross(branch, &medium, passage.coating, ahead, (onward, event))
     }
 
     /// What is between two media in the world, given the coating of what a branch leaves there and

@@ -2,7 +2,7 @@
 //! interpolated between them.
 //!
 //! Leaves of one ray at all wavelengths belong together where they have taken the same way. What such a leaf brings
-//! is a polynomial of the wave number, and the place that it sees as well: where the places of two
+//! is a polynomial of a power of the wave number, and the place that it sees as well: where the places of two
 //! neighbouring groups of wavelengths are more than a pixel apart, the photograph is looked at for smaller
 //! groups, each through a filter as long as the group's light is drawn out. So there is no noise of
 //! colors, and no edge where a group ends. A way that light of some wavelengths does not take counts
@@ -215,7 +215,8 @@ pub(super) struct Working<const N: usize> {
     lights: Vec<DVec3>,
     /// For each way, the level at which it looks, and where its lights begin.
     views: Vec<(usize, usize)>,
-    looks: Vec<(Look, Sight)>,
+    /// Where a way looks at each node.
+    places: Vec<DVec3>,
     /// The leaves of three rays in the light of a bin.
     leaves: [Vec<Leaf<N>>; 3],
     exposure: exposure::Working,
@@ -227,7 +228,7 @@ impl<const N: usize> Default for Working<N> {
             ways: std::array::from_fn(|_| Vec::new()),
             lights: Vec::new(),
             views: Vec::new(),
-            looks: Vec::new(),
+            places: Vec::new(),
             leaves: std::array::from_fn(|_| Vec::new()),
             exposure: exposure::Working::default(),
         }
@@ -278,34 +279,35 @@ pub(super) fn expose<const N: usize>(
     let [ways, ..] = &mut working.ways;
     find_ways(nodes, 0, ways);
     let count = nodes.count();
-    let is_whole = |way: &[Option<usize>]| is_whole(&spectral.nodes[0], nodes, way);
-    if is_coherent && !ways.chunks(count).all(is_whole) {
+    let Working { ways: [ways, ..], places, .. } = working;
+    let mut is_whole = |way: &[Option<usize>]| see(spectral, nodes, way, places);
+    if is_coherent && !ways.chunks(count).all(&mut is_whole) {
         expose_fringes(spectral, detection, nodes, spacing, colors, working);
         return;
     }
-    let Working { ways: [ways, ..], lights, views, looks, .. } = &mut *working;
+    let Working { ways: [ways, ..], lights, views, places, .. } = &mut *working;
     views.clear();
     lights.clear();
     for way in 0..ways.len() / count {
         let numbers = way * count..(way + 1) * count;
-        looks.clear();
-        for (node, number) in numbers.clone().enumerate() {
-            let Some(number) = ways[number] else { continue };
-            let rays = [0, 1, 2].map(|ray| nodes.ray(node, ray));
-            looks.push(exposure::look(&spectral.nodes[node], rays, number));
-        }
         let leaves = |node: usize| nodes.ray(node, 0).leaves;
-        // Of ways that interfere it is known.
-        if is_coherent || is_whole(&ways[numbers.clone()]) {
+        let look = |node: usize, number: usize| {
+            let rays = [0, 1, 2].map(|ray| nodes.ray(node, ray));
+            exposure::look(&spectral.nodes[node], rays, number)
+        };
+        if see(spectral, nodes, &ways[numbers.clone()], places) {
             let prepared = &spectral.nodes[0];
             let power = ways[way * count].map_or(0.0, |number| leaves(0)[number].largest_power());
-            let Some(view) = View::of(&spectral.bands, looks, power) else { continue };
-            let steps = view.steps.map(|step| step * spacing);
-            let groups = &spectral.bands.levels[view.level];
+            let middle = spectral.bands.middle_node;
+            let Some(number) = ways[way * count + middle] else { continue };
+            let (what, Sight { steps, .. }) = look(middle, number);
+            let Some(level) = level(&spectral.bands, places, steps, power) else { continue };
+            let steps = steps.map(|step| step * spacing);
+            let groups = &spectral.bands.levels[level];
             let begin = lights.len();
-            views.push((view.level, begin));
+            views.push((level, begin));
             for group in groups {
-                let light = light_of(prepared, group, looks, steps);
+                let light = light_of(prepared, group, (what, places), steps);
                 lights.push(DVec3::from_array(light));
             }
             for (node, number) in numbers.enumerate() {
@@ -331,16 +333,12 @@ pub(super) fn expose<const N: usize>(
                 }));
             }
         } else {
-            let mut looks = looks.iter();
             for (node, number) in numbers.enumerate() {
-                let (Some(number), Some((look, sight))) =
-                    (ways[number], ways[number].and_then(|_| looks.next()))
-                else {
-                    continue;
-                };
+                let Some(number) = ways[number] else { continue };
+                let (look, sight) = look(node, number);
                 let steps = sight.steps.map(|step| step * spacing);
                 let prepared = &spectral.nodes[node];
-                let light = exposure::seen(prepared, *look, sight.at, steps, DVec3::ZERO);
+                let light = exposure::seen(prepared, look, sight.at, steps, DVec3::ZERO);
                 let cell = &spectral.bands.cells[node];
                 let leaf = &leaves(node)[number];
                 if let Some(looked) = &detection.arrivals {
@@ -404,20 +402,22 @@ fn arrival_of_group<'l, const N: usize>(
     }
 }
 
-/// Whether a way is taken at every node, and sees the same thing there.
-fn is_whole<const N: usize>(
-    prepared: &PreparedScene<'_>,
+/// Whether a way is taken at every node, and sees the same thing there: the places of it.
+fn see<const N: usize>(
+    spectral: &Spectral<'_>,
     nodes: Nodes<'_, N>,
     way: &[Option<usize>],
+    places: &mut Vec<DVec3>,
 ) -> bool {
-    let sees = |leaf: &Leaf<N>| {
-        (leaf.end, leaf.body().is_none() && leaf.distance_to(&prepared.screen).is_some())
-    };
-    let numbers = way.iter().enumerate();
-    let mut all =
-        numbers.map(|(node, number)| number.map(|number| sees(&nodes.ray(node, 0).leaves[number])));
-    let first = all.next().flatten();
-    first.is_some() && all.all(|other| other == first)
+    places.clear();
+    let mut first = None;
+    way.iter().enumerate().all(|(node, number)| {
+        let Some(number) = *number else { return false };
+        let leaf = &nodes.ray(node, 0).leaves[number];
+        let (look, place) = exposure::place(&spectral.nodes[node], leaf);
+        places.push(place);
+        *first.get_or_insert((leaf.end, look)) == (leaf.end, look)
+    })
 }
 
 /// Adds to a pixel what leaves that interfere see more or less than each alone, bin by bin of fringes. All
@@ -528,48 +528,34 @@ fn find_ways<const N: usize>(nodes: Nodes<'_, N>, ray: usize, ways: &mut Vec<Opt
     }
 }
 
-/// How a way of light looks at things.
-struct View {
-    /// The level of the groups of wavelengths in which it does: so small that none of a strong one is
-    /// drawn out by more than [`MOST_DRAWN_OUT`], if there are such.
-    level: usize,
-    /// What the place changes by from a pixel to the next, in the middle of the light.
-    steps: [DVec3; 2],
+/// The level of the groups of wavelengths in which a way with so much power looks at things, whose place changes by these
+/// steps from a pixel to the next: so small that none of a strong one is drawn out by more than [`MOST_DRAWN_OUT`], if
+/// there are such.
+fn level(bands: &Bands, places: &[DVec3], steps: [DVec3; 2], power: f64) -> Option<usize> {
+    let spread = sum(&bands.levels.first()?.first()?.spread, places);
+    // As wide as a pixel is in the direction in which light is drawn out.
+    let length = spread.length_squared();
+    let pixel = steps.iter().map(|step| step.dot(spread).powi(2)).sum::<f64>().sqrt();
+    let count = if length == 0.0 { 1.0 } else { length / (MOST_DRAWN_OUT * pixel) };
+    let count = count * power.min(1.0).sqrt();
+    let level = bands.levels.iter().position(|level| level.len() as f64 >= count);
+    Some(level.unwrap_or(bands.levels.len() - 1))
 }
 
-impl View {
-    /// Of a way with so much power: a weak one is looked at less closely.
-    fn of(bands: &Bands, looks: &[(Look, Sight)], power: f64) -> Option<Self> {
-        let coarsest = bands.levels.first()?;
-        let [first, last] = [coarsest.first()?, coarsest.last()?];
-        let spread = sum(&first.spread, looks, |sight| sight.at);
-        let middle = if coarsest.len() > 1 { last } else { first };
-        let steps = [0, 1].map(|i| sum(&middle.middle, looks, |sight| sight.steps[i]));
-        // As wide as a pixel is in the direction in which light is drawn out.
-        let length = spread.length_squared();
-        let pixel = steps.iter().map(|step| step.dot(spread).powi(2)).sum::<f64>().sqrt();
-        let count = if length == 0.0 { 1.0 } else { length / (MOST_DRAWN_OUT * pixel) };
-        let count = count * power.min(1.0).sqrt();
-        let level = bands.levels.iter().position(|level| level.len() as f64 >= count);
-        Some(Self { level: level.unwrap_or(bands.levels.len() - 1), steps })
-    }
-}
-
-fn sum(weights: &[f64], looks: &[(Look, Sight)], of: impl Fn(&Sight) -> DVec3) -> DVec3 {
-    weights.iter().zip(looks).map(|(weight, (_, sight))| of(sight) * *weight).sum()
+fn sum(weights: &[f64], places: &[DVec3]) -> DVec3 {
+    weights.iter().zip(places).map(|(weight, place)| *place * *weight).sum()
 }
 
 /// What a way sees in the light of a group.
 fn light_of(
     prepared: &PreparedScene<'_>,
     group: &Group,
-    looks: &[(Look, Sight)],
+    (look, places): (Look, &[DVec3]),
     steps: [DVec3; 2],
 ) -> [f64; 3] {
-    let look = looks[0].0;
-    let at = sum(&group.middle, looks, |sight| sight.at);
+    let at = sum(&group.middle, places);
     let at = if look == Look::Surroundings { at.normalize_or_zero() } else { at };
-    let spread = sum(&group.spread, looks, |sight| sight.at);
+    let spread = sum(&group.spread, places);
     exposure::seen(prepared, look, at, steps, spread)
 }
 
