@@ -200,25 +200,29 @@ fn numbers(value: &Yaml) -> Option<Vec<f64>> {
     }
 }
 
-/// The wavelengths of a table, and one or two columns beside them.
+/// The wavelengths of a table, rising, and one or two columns beside them. The database has tables with a row out of
+/// place, or two measured at one wavelength: these count as their mean.
 fn columns_of(entry: &Yaml, count: usize) -> Result<[Cow<'static, [f64]>; 3], String> {
     let text = entry["data"].as_str().unwrap_or_default();
-    let mut columns: [Vec<f64>; 3] = Default::default();
-    for line in text.lines().filter(|line| !line.trim().is_empty()) {
+    let row = |line: &str| {
         let row = numbers(&Yaml::String(line.to_owned())).filter(|row| row.len() > count);
-        let row = row.ok_or_else(|| format!("its table has the row `{}`", line.trim()))?;
-        for (column, number) in columns.iter_mut().zip(row) {
-            column.push(number);
-        }
-    }
-    let wavelengths = &columns[0];
-    if wavelengths.is_empty() || wavelengths[0] <= 0.0 {
+        row.ok_or_else(|| format!("its table has the row `{}`", line.trim()))
+    };
+    let lines = text.lines().filter(|line| !line.trim().is_empty());
+    let mut rows: Vec<Vec<f64>> = lines.map(row).collect::<Result<_, _>>()?;
+    rows.sort_by(|one, next| one[0].total_cmp(&next[0]));
+    if rows.first().is_none_or(|first| first[0] <= 0.0) {
         return Err("its table has no wavelengths".to_owned());
     }
-    if !wavelengths.is_sorted_by(|one, next| one < next) {
-        return Err("the wavelengths of its table do not rise".to_owned());
-    }
-    Ok(columns.map(Cow::Owned))
+    let of_one = |column: usize| {
+        let of_one = rows.chunk_by(|one, next| one[0] == next[0]);
+        let mean = move |rows: &[Vec<f64>]| {
+            let numbers = rows.iter().map(|row| row[column]);
+            numbers.sum::<f64>() / rows.len() as f64
+        };
+        of_one.map(mean).collect()
+    };
+    Ok([0, 1, 2].map(|column| if column > count { Vec::new() } else { of_one(column) }.into()))
 }
 
 /// A text without the tags of a page, on one line.
@@ -270,6 +274,20 @@ mod tests {
     }
 
     #[test]
+    fn rows_may_be_in_any_order_and_measured_twice() {
+        let table = |rows: &str| read(&format!("  - type: tabulated n\n    data: |\n{rows}"));
+        let sorted = table("        0.4 1.5\n        0.6 1.4\n        0.8 1.3\n");
+        let unsorted =
+            table("        0.4 1.5\n        0.8 1.3\n        0.6 1.35\n        0.6 1.45\n");
+        let [sorted, unsorted] = [sorted, unsorted].map(|read| read.expect("a material").ordinary);
+        assert_eq!(sorted.range_um, unsorted.range_um);
+        for um in [0.4, 0.5, 0.6, 0.75, 0.8] {
+            let [one, other] = [&sorted, &unsorted].map(|law| law.at(um).expect("in range").index);
+            assert!((one - other).norm() < 1e-15, "{um}: {one} {other}");
+        }
+    }
+
+    #[test]
     fn what_is_no_material_is_refused() {
         for (data, part) in [
             ("  - type: tabulated n2\n    data: |\n        0.4 1e-20\n", "`tabulated n2`"),
@@ -285,10 +303,6 @@ mod tests {
             (
                 "  - type: formula 2\n    wavelength_range: 1 2\n    coefficients: 3 2 0.1 1.8\n",
                 "pairs of others, and there are 4",
-            ),
-            (
-                "  - type: tabulated n\n    data: |\n        0.4 1.5\n        0.3 1.5\n",
-                "do not rise",
             ),
             ("  - type: tabulated nk\n    data: |\n        0.4 1.5\n", "the row `0.4 1.5`"),
             ("  - type: tabulated k\n    data: |\n        0.4 1e-8\n", "no index"),

@@ -216,6 +216,7 @@ fn what_is_wrong_with_a_medium_is_told_at_its_place() {
         ("optic_axis = 30", "which is not given"),
         ("material = \"nowhere.yml\"", "cannot read nowhere.yml"),
         ("material = {}", "needs one law"),
+        ("material = \"bk7\"\ngroup_index = 1.7", "follows from its law"),
         ("material = { cauchy = [1.5, 0, 0], drude = { plasma_ev = 1 } }", "needs one law"),
         ("material = { cauchy = [1.5, 0, 0], permittivity_infinity = 2 }", "has no use for it"),
         ("material = { ordinary = \"bk7\" }", "no `extraordinary` material"),
@@ -248,4 +249,36 @@ fn what_is_wrong_with_a_medium_is_told_at_its_place() {
     let metal =
         "[[device]]\nkind = \"mirror-detour\"\nmetal = { index = [0.4, 2], material = \"gold\" }\n";
     assert!(refusal(metal).contains("a metal takes one of them"), "{}", refusal(metal));
+}
+
+#[test]
+fn a_file_may_be_given_wherever_a_material_may() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let table =
+        "DATA:\n  - type: tabulated nk\n    data: |\n        0.3 1.2 1.8\n        0.9 0.3 5.6\n";
+    std::fs::write(folder.path().join("metal.yml"), table).expect("written");
+    let glass = "DATA:\n  - type: formula 5\n    wavelength_range: 0.3 0.9\n    coefficients: 1.5 0.004 -2\n";
+    std::fs::write(folder.path().join("glass.yml"), glass).expect("written");
+    let (metal, glass) = ("metal = { material = \"metal.yml\" }", "material = \"glass.yml\"");
+    let prism = "[[device.prism]]\ncorners = [[-9, -8], [9, -8], [0, 8]]\n";
+    for device in [
+        format!("kind = \"body\"\n{glass}"),
+        format!("kind = \"body\"\n{metal}"),
+        "kind = \"body\"\nmaterial = { ordinary = \"glass.yml\", extraordinary = \"metal.yml\" }"
+            .to_owned(),
+        format!("kind = \"body\"\nindex = 1.5\ncoating = [{{ {glass}, thickness_nm = 100 }}]"),
+        format!("kind = \"lens\"\n{glass}"),
+        format!("kind = \"mirror\"\n{metal}"),
+        format!("kind = \"square-cloak\"\n{metal}"),
+        format!("kind = \"mirror-detour\"\n{metal}"),
+        format!("kind = \"double-gaussian-cloak\"\n{metal}"),
+        format!("kind = \"prisms\"\n{prism}{glass}"),
+        format!("kind = \"prisms\"\n{prism}{metal}"),
+    ] {
+        let text = format!("[[device]]\n{device}\n");
+        let loaded = cloakroom::scene_file::parse(&text, "test", folder.path(), &[]);
+        let scene = loaded.unwrap_or_else(|error| panic!("{device}: {error}")).scene;
+        let prepared = cloakroom::render::PreparedScene::new(&scene);
+        assert!(prepared.is_ok(), "{device}: {:?}", prepared.err());
+    }
 }

@@ -267,8 +267,8 @@ export function buildControls(device, kind, changed, only = null) {
     const setter = (name) => (value, moving) => {
       if (value === undefined) delete device[name];
       else {
-        // A medium is said in one way.
-        if (MEDIUM.includes(name)) for (const other of MEDIUM) delete device[other];
+        // A medium is said in one way, and another one may have no optic axis.
+        if (MEDIUM.includes(name)) for (const other of [...MEDIUM, "optic_axis"]) delete device[other];
         device[name] = value;
       }
       changed(moving);

@@ -18,8 +18,16 @@ const GROUPS: [usize; 8] = [1, 2, 3, 4, 6, 8, 12, BINS];
 /// The widths of bins within which light interferes, nm: for ways of nearly one length, and for others.
 const FRINGE_BINS_NM: [f64; 2] = [20.0, 10.0];
 
-/// A lamp's light in groups of wavelengths, and the wavelengths at which rays are traced: what these bring is
-/// interpolated between them by a polynomial of [a power](ABSCISSA) of the wave number.
+/// At how many wavelengths rays are traced, and how what they bring is interpolated between them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Interpolation {
+    /// By the polynomial of the wave number through Chebyshev's nodes.
+    Polynomial(usize),
+    /// Linearly between neighbours of evenly spaced wavelengths, both ends of the range among them.
+    Linear(usize),
+}
+
+/// A lamp's light in groups of wavelengths, and the wavelengths at which rays are traced.
 #[derive(Clone, Debug)]
 pub(crate) struct Bands {
     /// The wavelengths, nm: the nodes.
@@ -30,8 +38,16 @@ pub(crate) struct Bands {
     pub levels: Vec<Vec<Group>>,
     /// The bins within which light interferes, wide and narrow ones.
     pub fringes: [Vec<Fringe>; 2],
-    /// The light that is nearest to each node.
-    pub cells: Vec<Light>,
+    /// All of it between neighbouring nodes, and beyond the last ones.
+    pub stretches: Vec<Stretch>,
+}
+
+/// The light between two neighbouring nodes, as far as it goes with each of them, in proportion to how near it is; or beyond
+/// the last one.
+#[derive(Clone, Debug)]
+pub(crate) struct Stretch {
+    /// The nodes, one or two.
+    pub lights: Vec<(usize, Light)>,
 }
 
 /// The light of some wavelengths: how things of linear red, green and blue look, and what share of the lamp's
@@ -71,17 +87,27 @@ pub(crate) struct Fringe {
 }
 
 impl Bands {
-    /// Of a lamp, by rays of `count` wavelengths within a range (nm): what is beyond it goes as light of its ends
-    /// does. Of a lamp with no more lines than that, each line is traced.
-    pub fn new(lamp: &Lamp, count: usize, range_nm: [f64; 2]) -> Self {
+    /// Of a lamp, by rays of some wavelengths within a range (nm): what is beyond it goes as light of its ends does. Of
+    /// a lamp with no more lines than that, each line is traced.
+    pub fn new(lamp: &Lamp, interpolation: Interpolation, range_nm: [f64; 2]) -> Self {
         let samples = lamp.samples();
         let lines = matches!(lamp, Lamp::Lines(_));
-        let nodes_nm = if lines && samples.len() <= count {
+        let (Interpolation::Polynomial(count) | Interpolation::Linear(count)) = interpolation;
+        let each_line = lines && samples.len() <= count;
+        let nodes_nm = if each_line {
             samples.iter().map(|sample| sample.nm).collect()
+        } else if let Interpolation::Linear(_) = interpolation {
+            even_nodes(count, range_nm)
         } else {
             chebyshev_nodes(count, range_nm)
         };
-        let weights = |nm: f64| weights(&nodes_nm, nm.clamp(range_nm[0], range_nm[1]));
+        let weights = |nm: f64| {
+            let nm = nm.clamp(range_nm[0], range_nm[1]);
+            match interpolation {
+                Interpolation::Linear(_) if !each_line => linear_weights(&nodes_nm, nm),
+                _ => weights(&nodes_nm, nm),
+            }
+        };
         let group = |[low, high]: [f64; 2], held: &[(f64, Sample)]| {
             let total: f64 = held.iter().map(|(share, sample)| share * loudness(sample)).sum();
             let nm = if total > 0.0 {
@@ -148,14 +174,39 @@ impl Bands {
             let off = |node: usize| (1.0 / nodes_nm[node] - 1.0 / nm).abs();
             (0..nodes_nm.len()).min_by(|one, other| off(*one).total_cmp(&off(*other)))
         };
-        let cell = |node: usize| {
-            let held = samples.iter().filter(|sample| nearest(sample.nm) == Some(node));
-            light(held.map(|sample| (1.0, *sample)))
-        };
-        let cells = (0..nodes_nm.len()).map(cell).collect();
         let middle = levels[0].last().and_then(|group| nearest(group.nm)).unwrap_or(0);
-        Self { levels, fringes, cells, middle_node: middle, nodes_nm }
+        let stretches = if each_line {
+            let line = |(node, line)| Stretch { lights: vec![(node, light([(1.0, line)]))] };
+            samples.iter().copied().enumerate().map(line).collect()
+        } else {
+            stretches(&nodes_nm, &samples)
+        };
+        Self { levels, fringes, stretches, middle_node: middle, nodes_nm }
     }
+}
+
+/// The stretches between nodes, the longest first, and beyond the last ones.
+fn stretches(nodes_nm: &[f64], samples: &[Sample]) -> Vec<Stretch> {
+    let last = nodes_nm.len() - 1;
+    let stretch = |before: usize| {
+        let held = samples.iter().filter(|sample| {
+            nodes_nm.iter().take_while(|node| **node >= sample.nm).count() == before
+        });
+        let share = |node: usize, nm: f64| match before {
+            0 => 1.0,
+            _ if before > last => 1.0,
+            _ => {
+                let [long, short] = [nodes_nm[before - 1], nodes_nm[before]];
+                let of_short = (long - nm) / (long - short);
+                if node == before { of_short } else { 1.0 - of_short }
+            }
+        };
+        let of_node = |node: usize| {
+            (node, light(held.clone().map(|sample| (share(node, sample.nm), *sample))))
+        };
+        Stretch { lights: (before.saturating_sub(1)..=before.min(last)).map(of_node).collect() }
+    };
+    (0..=nodes_nm.len()).map(stretch).collect()
 }
 
 /// The group in which a wavelength (nm) is.
@@ -177,7 +228,7 @@ fn within(sample: &Sample, [low, high]: [f64; 2]) -> Option<(f64, Sample)> {
 }
 
 /// The sum of samples, each with a weight.
-fn light(held: impl Iterator<Item = (f64, Sample)>) -> Light {
+fn light(held: impl IntoIterator<Item = (f64, Sample)>) -> Light {
     let (mut color, mut bins) = (DMat3::ZERO, Vec::<(usize, [f64; 3])>::new());
     for (weight, sample) in held {
         color += sample.color_of_things() * weight;
@@ -194,30 +245,38 @@ fn light(held: impl Iterator<Item = (f64, Sample)>) -> Light {
     Light { color, bins }
 }
 
-/// Polynomials that interpolate between wavelengths are of the wave number to this power: in the wave number itself what
-/// resonates in the ultraviolet is nearer, in its square what does in the infrared. The media of the catalogue take as few
-/// wavelengths as with any other power from 1 to 2, SF11 four where the wave number takes five.
-const ABSCISSA: f64 = 1.5;
-
-fn abscissa(nm: f64) -> f64 {
-    nm.powf(-ABSCISSA)
-}
-
-/// Chebyshev's nodes over a range of wavelengths (nm), the longest first.
+/// Chebyshev's nodes in the wave number over a range of wavelengths (nm), the longest first.
 pub(crate) fn chebyshev_nodes(count: usize, [shortest, longest]: [f64; 2]) -> Vec<f64> {
-    let [low, high] = [longest, shortest].map(abscissa);
+    let [low, high] = [1.0 / longest, 1.0 / shortest];
     let node = |i: usize| {
         let angle = std::f64::consts::PI * (i as f64 + 0.5) / count as f64;
-        (0.5 * (low + high) - 0.5 * (high - low) * angle.cos()).powf(-1.0 / ABSCISSA)
+        1.0 / (0.5 * (low + high) - 0.5 * (high - low) * angle.cos())
     };
     (0..count).map(node).collect()
 }
 
-/// The weights of nodes (wavelengths, nm) in the polynomial through them, at a wavelength.
+/// Evenly spaced wavelengths (nm), the longest first, both ends of the range among them.
+fn even_nodes(count: usize, [shortest, longest]: [f64; 2]) -> Vec<f64> {
+    let step = (longest - shortest) / (count - 1) as f64;
+    (0..count).map(|i| longest - step * i as f64).collect()
+}
+
+/// The weights of nodes (wavelengths, nm; the longest first) at a wavelength among them, linear between neighbours.
+fn linear_weights(nodes_nm: &[f64], nm: f64) -> Vec<f64> {
+    let mut weights = vec![0.0; nodes_nm.len()];
+    let after = nodes_nm.partition_point(|node| *node >= nm).clamp(1, nodes_nm.len() - 1);
+    let [long, short] = [nodes_nm[after - 1], nodes_nm[after]];
+    weights[after] = (long - nm) / (long - short);
+    weights[after - 1] = 1.0 - weights[after];
+    weights
+}
+
+/// The weights of nodes (wavelengths, nm) in the polynomial of the wave number through them, at a
+/// wavelength.
 pub(crate) fn weights(nodes_nm: &[f64], nm: f64) -> Vec<f64> {
-    let x = abscissa(nm);
-    let nodes: Vec<f64> = nodes_nm.iter().copied().map(abscissa).collect();
-    let others = |i: usize| nodes.iter().enumerate().filter(move |(j, _)| *j != i);
-    let weight = |i: usize| others(i).map(|(_, at)| (x - at) / (nodes[i] - at)).product();
+    let x = 1.0 / nm;
+    let at = |i: usize| 1.0 / nodes_nm[i];
+    let others = |i: usize| (0..nodes_nm.len()).filter(move |j| *j != i);
+    let weight = |i: usize| others(i).map(|j| (x - at(j)) / (at(i) - at(j))).product();
     (0..nodes_nm.len()).map(weight).collect()
 }

@@ -11,7 +11,9 @@ mod standard;
 mod tests;
 
 pub use bands::{BIN_EDGES_NM, BINS};
-pub(crate) use bands::{Bands, Fringe, Group, Light, chebyshev_nodes, weights};
+pub(crate) use bands::{
+    Bands, Fringe, Group, Interpolation, Light, Stretch, chebyshev_nodes, weights,
+};
 
 use glam::{DMat3, DVec3};
 use standard::{COUNT, D65, FIRST_NM, OBSERVER, RED_AND_GREEN, STEP_NM};

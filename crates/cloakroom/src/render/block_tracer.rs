@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub const BAND_ROWS: u32 = patch::SIDE as u32;
 
 /// The most wavelengths at which a picture is traced, and once more for what is not a color.
-pub(super) const MOST_TRACERS: usize = 32;
+pub(super) const MOST_TRACERS: usize = 36;
 
 /// Of each tracer the share of a patch that it is to trace, if that is known.
 type Shares = [Option<f64>; MOST_TRACERS];

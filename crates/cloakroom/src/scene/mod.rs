@@ -323,10 +323,15 @@ impl DeviceSettings {
     #[must_use]
     pub fn is_dispersive(&self) -> bool {
         let table = self.device.table();
-        let of_law = matches!(self.placement.dispersion, Dispersion::Drude | Dispersion::Lorentz);
-        of_law || has_material(table.keys(), &table.written()) || {
+        self.has_dispersion_law() || has_material(table.keys(), &table.written()) || {
             has_material(Placement::KEYS, &self.placement.written())
         }
+    }
+
+    /// Whether it is a design that a law takes to other wavelengths than its own.
+    #[must_use]
+    pub fn has_dispersion_law(&self) -> bool {
+        matches!(self.placement.dispersion, Dispersion::Drude | Dispersion::Lorentz)
     }
 
     /// The law of its media, for the light of the scene.

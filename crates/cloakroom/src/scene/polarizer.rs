@@ -1,6 +1,6 @@
 //! The polarizer before the camera's lens.
 
-use crate::keys::{Field, KeyKind, Value};
+use crate::keys::{Field, KeyKind, Value, VisitFile};
 
 /// What the camera's polarizer lets through.
 ///
@@ -50,6 +50,8 @@ impl Field for Polarizer {
             word => word.to_string().into(),
         })
     }
+
+    fn show_files(&mut self, _path: &str, _visit: &mut VisitFile<'_>) {}
 }
 
 impl Polarizer {

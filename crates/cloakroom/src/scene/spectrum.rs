@@ -31,7 +31,7 @@ table! {
         /// Lines { wavelength_nm = 546.1, power = 1 }, each of one wavelength.
         lines: Vec<SpectralLine>,
         /// Rows [wavelength, power] of rising wavelengths (nm), with straight lines between them and
-        /// nothing beyond: the power is that in equal ranges of wavelengths.
+        /// nothing beyond: the power is that in equal ranges of wavelengths. They stand in the scene itself.
         table: Option<Sampled>, in ValueRange::Within(0.0, 1e30),
     }
 }

@@ -91,6 +91,10 @@ impl Device for SolidBody {
         let endless = self.shape == BodyShape::Slab
             || (self.shape == BodyShape::Cylinder && request.length.is_none());
         KeyError::refuse_if(pictured && endless, key!(Self.surface), message)?;
+        let of_law = medium.is_some_and(|medium| medium.law.is_some());
+        let message = "the group index of a material follows from its law; leave group_index out";
+        let given = self.group_index.is_some();
+        KeyError::refuse_if(of_law && given, key!(Self.group_index), message)?;
         let body = Body { shape, priority: self.priority };
         let region = |medium: DispersiveMedium| HomogeneousRegion {
             group_index: self.group_index,

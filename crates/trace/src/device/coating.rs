@@ -3,7 +3,7 @@
 use super::medium_words::of_index;
 use super::{Coating, Convex, FarSide, MaterialWord, MediumWords, Region, RegionBorder, Structure};
 use crate::key;
-use crate::keys::{Field, KeyError, KeyKind, Value, ValueRange};
+use crate::keys::{Field, KeyError, KeyKind, Value, ValueRange, VisitFile};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::interface::FilmLayer;
@@ -132,6 +132,12 @@ impl Field for Metal {
             Self::None => Some(false.into()),
             Self::Perfect => Some(true.into()),
             Self::OfIndex(metal) => metal.value(),
+        }
+    }
+
+    fn show_files(&mut self, path: &str, visit: &mut VisitFile<'_>) {
+        if let Self::OfIndex(metal) = self {
+            metal.show_files(path, visit);
         }
     }
 }

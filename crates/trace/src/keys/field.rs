@@ -46,7 +46,7 @@ pub trait Field: Sized {
     }
 
     /// Shows the names of files in it, where the key's path is `path`.
-    fn show_files(&mut self, _path: &str, _visit: &mut VisitFile<'_>) {}
+    fn show_files(&mut self, path: &str, visit: &mut VisitFile<'_>);
 
     /// Holds it against its key.
     ///
@@ -110,6 +110,8 @@ macro_rules! field {
                 let to: fn(&Self) -> Value = $to;
                 Some(to(self))
             }
+
+            fn show_files(&mut self, _path: &str, _visit: &mut VisitFile<'_>) {}
         }
     };
 }

@@ -304,6 +304,8 @@ macro_rules! choice {
             fn value(&self) -> Option<$crate::keys::Value> {
                 Some(self.word().into())
             }
+
+            fn show_files(&mut self, _path: &str, _visit: &mut $crate::keys::VisitFile<'_>) {}
         }
 
         impl $crate::keys::Item for $choice {

@@ -2,11 +2,13 @@
 //! interpolated between them.
 //!
 //! Leaves of one ray at all wavelengths belong together where they have taken the same way. What such a leaf brings
-//! is a polynomial of a power of the wave number, and the place that it sees as well: where the places of two
+//! is a polynomial of the wave number, and the place that it sees as well: where the places of two
 //! neighbouring groups of wavelengths are more than a pixel apart, the photograph is looked at for smaller
 //! groups, each through a filter as long as the group's light is drawn out. So there is no noise of
 //! colors, and no edge where a group ends. A way that light of some wavelengths does not take counts
-//! for those that are nearest to one that does.
+//! between those that do and those that do not in proportion to how near they are. Where a design is what it is at one
+//! wavelength alone, ways change all over the spectrum: more wavelengths are traced, and what they bring is interpolated
+//! between neighbours.
 
 use super::block_tracer::MOST_TRACERS;
 use super::detection::Detection;
@@ -14,7 +16,9 @@ use super::exposure::{self, Look, Sight, Traced};
 use super::flight::{Arrival, Arrivals};
 use super::pixel::Pixel;
 use super::prepared_scene::{PreparedScene, PreparedSceneError};
-use crate::color::{BINS, Bands, Fringe, Group, Lamp, Light, chebyshev_nodes, weights};
+use crate::color::{
+    BINS, Bands, Fringe, Group, Interpolation, Lamp, Light, Stretch, chebyshev_nodes, weights,
+};
 use crate::scene::{DeviceSettings, Scene};
 use crate::trace::{Coherence, Leaf};
 use glam::{DMat3, DVec3};
@@ -25,13 +29,19 @@ use optics::wave::ComplexVector;
 /// The wavelengths that are traced at all: beyond, less than a thousandth of daylight is seen.
 const TRACED_NM: [f64; 2] = [390.0, 730.0];
 
-/// Where a law holds in less than the range that is traced, these ends are tried.
-const SHORTEST_NM: [f64; 5] = [TRACED_NM[0], 400.0, 410.0, 420.0, 430.0];
-const LONGEST_NM: [f64; 5] = [TRACED_NM[1], 720.0, 710.0, 700.0, 690.0];
+/// Where a law holds in less than the range that is traced, an end within these from it is tried every so many nm: what is
+/// seen beyond it goes as there.
+const WITHIN_NM: f64 = 60.0;
+const EVERY_NM: f64 = 10.0;
 
 /// The fewest and the most wavelengths at which rays through media of laws are traced.
 const FEWEST: usize = 3;
 const MOST_OF_MEDIA: usize = 10;
+
+/// How far apart (nm) wavelengths are at most at which rays are traced through a design with a law, and how many there are at
+/// least.
+const OF_DESIGN_NM: f64 = 10.0;
+const FEWEST_OF_DESIGN: usize = 9;
 
 /// How exactly media are to be known between these wavelengths, of the largest entry of their tensors:
 /// over a meter that is 0.1 mm.
@@ -88,12 +98,18 @@ impl<'s> Spectral<'s> {
             || assembly.devices().iter().flat_map(|device| &device.structure.films).flatten();
         let changes = is_dispersive || assembly.absorbs() || films().next().is_some();
         let range = range_of(scene, &lamp)?;
-        let count = match &lamp {
-            Lamp::Lines(lines) if lines.len() <= MOST_LINES => lines.len(),
-            _ if changes => nodes_for(prepared, range)?,
-            _ => 1,
+        let interpolation = match &lamp {
+            Lamp::Lines(lines) if lines.len() <= MOST_LINES => {
+                Interpolation::Polynomial(lines.len())
+            }
+            _ if scene.devices.iter().any(DeviceSettings::has_dispersion_law) => {
+                let count = ((range[1] - range[0]) / OF_DESIGN_NM).ceil() as usize + 1;
+                Interpolation::Linear(count.max(FEWEST_OF_DESIGN))
+            }
+            _ if changes => Interpolation::Polynomial(nodes_for(prepared, range)?),
+            _ => Interpolation::Polynomial(1),
         };
-        let bands = Bands::new(&lamp, count, range);
+        let bands = Bands::new(&lamp, interpolation, range);
         let nodes = if changes {
             bands.nodes_nm.iter().map(|nm| prepared.at(*nm)).collect::<Result<_, _>>()?
         } else {
@@ -122,13 +138,23 @@ fn range_of(scene: &Scene, lamp: &Lamp) -> Result<[f64; 2], PreparedSceneError> 
         let all = lines.iter().map(|[nm, _]| *nm);
         return Ok([all.clone().fold(f64::INFINITY, f64::min), all.fold(0.0, f64::max)]);
     }
-    let end = |ends: [f64; 5]| {
-        let holds = |nm: &f64| media_at(scene, *nm).is_ok();
+    let lit = lamp.samples().into_iter().filter(|sample| sample.color != DVec3::ZERO);
+    let [first, last] = lit.fold([f64::INFINITY, 0.0], |[first, last], sample| {
+        [f64::min(first, sample.nm - EVERY_NM), f64::max(last, sample.nm + EVERY_NM)]
+    });
+    let [first, last] = [first, last].map(|end| end.clamp(TRACED_NM[0], TRACED_NM[1]));
+    // Of what lies beyond, the last light that is traced is as good as any.
+    let first = first.min(TRACED_NM[1] - EVERY_NM);
+    let last = last.max(TRACED_NM[0] + EVERY_NM);
+    let end = |from: f64, inward: f64| {
+        let ends = std::iter::successors(Some(0.0), |within| Some(within + EVERY_NM))
+            .take_while(|within| *within <= WITHIN_NM)
+            .map(|within| from + inward * within);
         // What is wrong is told of the end.
-        let found = ends.into_iter().find(holds);
-        found.map_or_else(|| media_at(scene, ends[0]).map(|_| ends[0]), Ok)
+        let found = ends.into_iter().find(|nm| media_at(scene, *nm).is_ok());
+        found.map_or_else(|| media_at(scene, from).map(|_| from), Ok)
     };
-    Ok([end(SHORTEST_NM)?, end(LONGEST_NM)?])
+    Ok([end(first, 1.0)?, end(last, -1.0)?])
 }
 
 /// The entries of both tensors of a medium, real and imaginary.
@@ -217,6 +243,8 @@ pub(super) struct Working<const N: usize> {
     views: Vec<(usize, usize)>,
     /// Where a way looks at each node.
     places: Vec<DVec3>,
+    /// The same of a way that is not taken at all nodes, with the number of the leaf.
+    looks: Vec<Option<(usize, (Look, Sight))>>,
     /// The leaves of three rays in the light of a bin.
     leaves: [Vec<Leaf<N>>; 3],
     exposure: exposure::Working,
@@ -229,6 +257,7 @@ impl<const N: usize> Default for Working<N> {
             lights: Vec::new(),
             views: Vec::new(),
             places: Vec::new(),
+            looks: Vec::new(),
             leaves: std::array::from_fn(|_| Vec::new()),
             exposure: exposure::Working::default(),
         }
@@ -285,7 +314,7 @@ pub(super) fn expose<const N: usize>(
         expose_fringes(spectral, detection, nodes, spacing, colors, working);
         return;
     }
-    let Working { ways: [ways, ..], lights, views, places, .. } = &mut *working;
+    let Working { ways: [ways, ..], lights, views, places, looks, .. } = &mut *working;
     views.clear();
     lights.clear();
     for way in 0..ways.len() / count {
@@ -333,34 +362,58 @@ pub(super) fn expose<const N: usize>(
                 }));
             }
         } else {
-            for (node, number) in numbers.enumerate() {
-                let Some(number) = ways[number] else { continue };
-                let (look, sight) = look(node, number);
-                let steps = sight.steps.map(|step| step * spacing);
-                let prepared = &spectral.nodes[node];
-                let light = exposure::seen(prepared, look, sight.at, steps, DVec3::ZERO);
-                let cell = &spectral.bands.cells[node];
-                let leaf = &leaves(node)[number];
-                if let Some(looked) = &detection.arrivals {
-                    let screen = &spectral.nodes[node].screen;
-                    let screen = (screen, leaf.distance_to(screen));
-                    let power = detection.detected(&leaf.power);
-                    let light = cell.color * DVec3::from_array(light) * power;
-                    let power = power * brightness(cell);
-                    colors.arrivals.push(Arrival::of(
-                        looked,
-                        leaf,
-                        screen,
-                        power,
-                        light.to_array(),
-                    ));
+            looks.clear();
+            looks.extend(
+                ways[numbers]
+                    .iter()
+                    .enumerate()
+                    .map(|(node, number)| number.map(|number| (number, look(node, number)))),
+            );
+            for stretch in &spectral.bands.stretches {
+                for (node, light) in &stretch.lights {
+                    let node = *node;
+                    let Some((number, (look, sight))) = looks[node] else { continue };
+                    let across = drift(looks, stretch, node);
+                    let spread = across * DRAWN_OUT_BY_NEARNESS;
+                    let at = place_of(look, sight.at + across / 3.0);
+                    let steps = sight.steps.map(|step| step * spacing);
+                    let prepared = &spectral.nodes[node];
+                    let seen = exposure::seen(prepared, look, at, steps, spread);
+                    let leaf = &leaves(node)[number];
+                    if let Some(looked) = &detection.arrivals {
+                        let screen = (&prepared.screen, leaf.distance_to(&prepared.screen));
+                        let power = detection.detected(&leaf.power);
+                        let color = light.color * DVec3::from_array(seen) * power;
+                        let power = power * brightness(light);
+                        colors.arrivals.push(Arrival::of(
+                            looked,
+                            leaf,
+                            screen,
+                            power,
+                            color.to_array(),
+                        ));
+                    }
+                    add(detection, leaf, std::iter::once((light, DVec3::from_array(seen))), colors);
                 }
-                add(detection, leaf, std::iter::once((cell, DVec3::from_array(light))), colors);
             }
         }
     }
     if is_coherent && views.len() > 1 {
         interfere(spectral, detection, nodes, colors, working);
+    }
+}
+
+/// A third of the light that goes with a node in proportion to how near it is comes from beyond a third of the way to the
+/// next one; it is as wide as a box of this share of that way.
+const DRAWN_OUT_BY_NEARNESS: f64 = 0.816_496_580_927_726;
+
+/// By how much the place that a way sees changes from a node to the other end of a stretch; by nothing if the way sees
+/// something else there, or is not taken.
+fn drift(looks: &[Option<(usize, (Look, Sight))>], stretch: &Stretch, node: usize) -> DVec3 {
+    let there = stretch.lights.iter().find(|(other, _)| *other != node);
+    match (looks[node], there.and_then(|(other, _)| looks[*other])) {
+        (Some((_, (look, here))), Some((_, (other, there)))) if look == other => there.at - here.at,
+        _ => DVec3::ZERO,
     }
 }
 
@@ -546,6 +599,11 @@ fn sum(weights: &[f64], places: &[DVec3]) -> DVec3 {
     weights.iter().zip(places).map(|(weight, place)| *place * *weight).sum()
 }
 
+/// A place between others: of the surroundings, it is a direction.
+fn place_of(look: Look, between: DVec3) -> DVec3 {
+    if look == Look::Surroundings { between.normalize_or_zero() } else { between }
+}
+
 /// What a way sees in the light of a group.
 fn light_of(
     prepared: &PreparedScene<'_>,
@@ -553,8 +611,7 @@ fn light_of(
     (look, places): (Look, &[DVec3]),
     steps: [DVec3; 2],
 ) -> [f64; 3] {
-    let at = sum(&group.middle, places);
-    let at = if look == Look::Surroundings { at.normalize_or_zero() } else { at };
+    let at = place_of(look, sum(&group.middle, places));
     let spread = sum(&group.spread, places);
     exposure::seen(prepared, look, at, steps, spread)
 }
