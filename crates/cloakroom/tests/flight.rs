@@ -162,6 +162,42 @@ fn light_arrives_in_the_mean_when_the_maps_say() {
     }
 }
 
+#[test]
+fn the_power_of_colored_light_is_that_of_its_rays() {
+    // Through glass, beside it, and at its edges, where a pixel has rays of both.
+    let device = "[camera]\nresolution = [50, 36]\nsamples = 4\n[picture]\nchannels = ['group_delay']\n\
+        [[device]]\nkind = 'body'\nshape = 'box'\nsize = [5, 20, 20]\nrotation = 10\nmaterial = 'bk7'\n";
+    for (spectrum, nm) in [
+        ("590", Some(590.0)),
+        ("650", Some(650.0)),
+        ("'D65'", None),
+        ("'E'", None),
+        ("{ black_body_k = 2856 }", None),
+        ("{ lines = [{ wavelength_nm = 436 }, { wavelength_nm = 546.1, power = 2 }] }", None),
+    ] {
+        let of_maps = nm.unwrap_or(550.0);
+        let scene =
+            scene(&format!("{device}[light]\nspectrum = {spectrum}\nwavelength_nm = {of_maps}\n"));
+        let prepared = PreparedScene::new(&scene).unwrap();
+        let picture = supervised(|supervision| {
+            render(&prepared, ChannelSet::Everything, supervision).unwrap().picture
+        });
+        let [delivered, delay] =
+            ["delivered", "group_delay"].map(|name| &picture.channel(name).unwrap().samples);
+        let cube = cube(&scene, &settings("4.5..12:0.02", 0.0, Delay::Group));
+        for (pixel, (mean, power)) in moments(&cube).into_iter().enumerate() {
+            let all = power + cube.beside.iter().map(|beside| beside[pixel][3]).sum::<f64>();
+            let exact = if nm.is_some() { 1e-6 } else { 4e-3 };
+            let off = (all - delivered.get(pixel)).abs();
+            assert!(off < exact, "{spectrum} {pixel}: {all}, off by {off}");
+            if nm.is_some() && power == all {
+                let off = (mean - delay.get(pixel)).abs();
+                assert!(off < 1e-4 / LIGHT, "{spectrum} {pixel}: {mean}, off by {off}");
+            }
+        }
+    }
+}
+
 /// One sample a pixel: each is one ray.
 fn of_rays(device: &str) -> Scene {
     scene(&format!("[camera]\nresolution = [60, 44]\nsamples = 1\n{device}"))
@@ -270,13 +306,18 @@ fn what_flashes_is_seen_when_its_light_comes() {
     let plane = DVec3::new(0.0, 3.0, 4.0);
     let point = moments(&of(Flash::Point(source)));
     let wave = moments(&of(Flash::PlaneWave(plane)));
-    let spot = moments(&of(Flash::Spot { middle: DVec3::new(20.0, 5.0, 5.0), radius: 2.0 }));
+    let of_spot = of(Flash::Spot { middle: DVec3::new(20.0, 5.0, 5.0), radius: 2.0 });
+    let (spot, all) = (moments(&of_spot), of(Flash::Photograph).picture);
     for pixel in 0..24 * 18 {
         let (place, time) = straight(pixel);
         assert!((point[pixel].0 - time - place.distance(source) / LIGHT).abs() < 1e-12);
         assert!((wave[pixel].0 - time - place.dot(plane / 5.0) / LIGHT).abs() < 1e-12);
         let off = (place - DVec3::new(50.0, 5.0, 5.0)).length_squared() / 4.0;
         assert!((spot[pixel].1 - 0.5_f64.powf(off)).abs() < 1e-12);
+        let lit = all[pixel].map(|light| light * 0.5_f64.powf(off));
+        for (lit, found) in lit.into_iter().zip(of_spot.picture[pixel]) {
+            assert!((lit - found).abs() < 1e-12, "{pixel}: {lit} {found}");
+        }
     }
 }
 
@@ -293,6 +334,18 @@ fn the_range_of_times_holds_nearly_all_light() {
         let beside: f64 = cube.beside.iter().flatten().map(|light| light[3]).sum();
         assert!(beside < 2e-3 * within, "{text}: {within} {beside}");
     }
+}
+
+#[test]
+fn light_that_is_caught_for_long_does_not_stretch_the_range_of_times() {
+    let text = "[camera]\nresolution = [40, 30]\nposition = [-70, 60, 0]\ntarget = [0, 4, 0]\n\
+        [[device]]\nkind = 'body'\nshape = 'box'\nsize = [70, 40, 60]\nposition = [0, 20, 0]\nindex = 1.5\n\
+        [[device]]\nkind = 'mirror'\nrotation = 90\nposition = [0, -0.1, 0]\nwidth = 70\nheight = 60\n";
+    let scene = scene(text);
+    let prepared = PreparedScene::new(&scene).unwrap();
+    let [first, last] = arrival_times(&prepared, &Arrivals::default()).unwrap();
+    // A few ways to and fro through the glass, not hundreds.
+    assert!(first > 3.0 && last < 60.0, "{first} {last}");
 }
 
 /// Depths by the first and by the strongest pulse, cm.

@@ -1,7 +1,7 @@
 //! The wavelengths at which rays are traced, and the color that what they bring has.
 
 use super::{Lamp, SEEN_NM, Sample};
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 /// In how many bins of wavelengths light of all wavelengths is looked at.
 pub const BINS: usize = 16;
@@ -40,6 +40,8 @@ pub(crate) struct Bands {
     pub fringes: [Vec<Fringe>; 2],
     /// All of it between neighbouring nodes, and beyond the last ones.
     pub stretches: Vec<Stretch>,
+    /// How bright a white thing is in all of it.
+    white: f64,
 }
 
 /// The light between two neighbouring nodes, as far as it goes with each of them, in proportion to how near it is; or beyond
@@ -181,8 +183,20 @@ impl Bands {
         } else {
             stretches(&nodes_nm, &samples)
         };
-        Self { levels, fringes, stretches, middle_node: middle, nodes_nm }
+        let white = levels[0].iter().flat_map(|group| &group.lights).map(brightness).sum();
+        Self { levels, fringes, stretches, white, middle_node: middle, nodes_nm }
     }
+
+    /// How bright a white thing is in some of the light, as a share of all.
+    pub fn brightness(&self, light: &Light) -> f64 {
+        brightness(light) / self.white
+    }
+}
+
+fn brightness(light: &Light) -> f64 {
+    /// Of red, green and blue (ITU-R BT.709).
+    const BRIGHTNESS: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+    BRIGHTNESS.dot(light.color * DVec3::ONE)
 }
 
 /// The stretches between nodes, the longest first, and beyond the last ones.

@@ -48,13 +48,19 @@ pub(super) struct Times {
 /// The pulses of one camera ray: time of flight (ns) and power of each leaf on the photograph.
 pub(super) type Pulses = Vec<(f64, f64)>;
 
+/// Puts what arrives in order, the earliest first; what is no number stands last.
+#[inline(never)]
+pub(super) fn sort_by_arrival(arrivals: &mut [(f64, f64)]) {
+    arrivals.sort_by(|one, other| one.0.total_cmp(&other.0));
+}
+
 impl Depths {
     /// Adds what comes back of one camera ray: paths (cm) and shares of power, of which those are one
     /// pulse that differ by less than `tolerance`.
     pub fn add(&mut self, returns: &mut [(f64, f64)], tolerance: f64) {
         /// Weaker returns are lost in the noise.
         const LEAST_POWER: f64 = 0.01;
-        returns.sort_by(|one, other| one.0.total_cmp(&other.0));
+        sort_by_arrival(returns);
         let mut rest = &returns[..];
         while let Some((path, _)) = rest.first() {
             let together = rest.iter().take_while(|other| other.0 - path <= tolerance).count();

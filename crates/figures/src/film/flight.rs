@@ -70,7 +70,7 @@ pub fn flight_frames(
         let pixels: Vec<[f32; 3]> = steady.iter().zip(&seen).map(exposed).collect();
         if let Some(mut image) = light_to_srgb([width, height], &pixels) {
             let gate = store.gate();
-            draw_clock(&mut image, &time_in_words(gate.middle(bin), gate.step()))?;
+            draw_clock(&mut image, &time_in_words(gate.middle(bin), gate.clock()))?;
             write_png(&image, metadata, &frames.file(bin))?;
         }
         (supervision.rows_done)(1);

@@ -26,7 +26,7 @@ pub fn pulse_frames(
         if supervision.stop.load(Ordering::Relaxed) {
             return Err(RenderError::from(Stopped).into());
         }
-        let pulse = Pulse { time: gate.middle(frame), delay, step: gate.step() };
+        let pulse = Pulse { time: gate.middle(frame), delay, step: gate.clock() };
         let image = diagram.draw(Some(&pulse)).to_image(size)?;
         write_png(&image, metadata, &frames.file(frame))?;
         (supervision.rows_done)(1);

@@ -27,6 +27,11 @@ pub enum Flash {
 }
 
 impl Flash {
+    /// Whether all of the photograph flashes, and as bright as it is.
+    pub(super) fn is_even(&self) -> bool {
+        !matches!(self, Self::Spot { .. })
+    }
+
     /// How much later (ns) a point of the photograph flashes, and how bright it is.
     pub(super) fn at(&self, point: DVec3, screen: &Screen) -> (f64, f64) {
         match *self {

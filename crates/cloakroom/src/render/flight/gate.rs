@@ -85,6 +85,20 @@ impl Gate {
         self.step
     }
 
+    /// How exact a clock is that shows the middles of all bins, ns: to the length of a bin, or further where the gate starts
+    /// between its multiples.
+    #[must_use]
+    pub fn clock(&self) -> f64 {
+        let is_multiple = |time: f64, unit: f64| {
+            let count = time / unit;
+            (count - count.round()).abs() < 1e-6
+        };
+        let decade = 10_f64.powf(self.step.log10().floor());
+        let finer = [1.0, 0.1, 0.01, 1e-3].map(|part| part * decade);
+        let shows_all = |unit: &f64| [self.start, self.step].iter().all(|t| is_multiple(*t, *unit));
+        [self.step].into_iter().chain(finer).find(shows_all).unwrap_or(self.step)
+    }
+
     /// The middle of a bin, counted from 0, ns.
     #[must_use]
     pub fn middle(&self, bin: usize) -> f64 {
@@ -213,6 +227,21 @@ mod tests {
         let gate = Gate::around([5.1004, 5.6451], 120);
         assert_eq!(gate.to_string(), "5.095..5.655:0.005");
         assert_eq!(gate.to_string().parse::<Gate>().map(|gate| gate.bins()), Ok(gate.bins()));
+    }
+
+    #[test]
+    fn a_clock_shows_the_middles_of_all_bins() {
+        for (gate, clock) in [
+            ("5..5.4:0.005", 0.005),
+            ("5.02..5.42:0.1", 0.01),
+            ("4.85..6.85:0.1", 0.01),
+            ("0.25..9:1", 0.01),
+            ("0..1:0.0333333", 0.0333333),
+            ("3..9:2", 1.0),
+        ] {
+            let found = gate.parse::<Gate>().expect("a gate").clock();
+            assert!((found / clock - 1.0).abs() < 1e-9, "{gate}: {found}");
+        }
     }
 
     #[test]

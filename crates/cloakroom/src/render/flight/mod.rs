@@ -16,6 +16,7 @@ use super::block_tracer::BlockTracer;
 use super::detection::Detection;
 use super::exposure::{group_delay, time_of_flight};
 use super::patch::SIDE;
+use super::pixel::sort_by_arrival;
 use super::{Exposer, PreparedScene, RenderError, Supervision, Tile};
 use crate::assembly::Screen;
 use crate::split_mix::mix;
@@ -156,7 +157,7 @@ pub struct FlightTile {
     pub untimed: Vec<Flashed>,
     /// What does not flash: bodies and surroundings.
     pub steady: Vec<[f64; 3]>,
-    /// The picture without any gate, its leaves added by power.
+    /// The picture without any gate in the light of the flash, its leaves added by power.
     pub picture: Vec<[f64; 3]>,
 }
 
@@ -170,6 +171,14 @@ pub struct PixelBins {
 }
 
 impl FlightTile {
+    /// What comes to a pixel at any time, and what does not flash.
+    fn in_all(&self, index: usize) -> [f64; 3] {
+        let beside = self.outside.iter().map(|outside| outside[index]);
+        let flashed = self.bins[index].light.iter().copied().chain(beside);
+        let flashed = flashed.chain([self.untimed[index]]);
+        flashed.fold(self.steady[index], |sum, light| std::array::from_fn(|i| sum[i] + light[i]))
+    }
+
     fn new(tile: Tile) -> Self {
         let pixels = tile.width as usize * tile.height as usize;
         let flashed = || vec![[0.0; 4]; pixels];
@@ -374,7 +383,7 @@ impl<const N: usize> Exposer<'_, N> {
             |tracers, at, traced| {
                 let (block, samples, of_block) = self.expose_samples(tracers, at, traced, stop)?;
                 stats += of_block;
-                let Some((_, pixels)) = &mut self.flight else { return Ok(()) };
+                let Some((settings, pixels)) = &mut self.flight else { return Ok(()) };
                 for (i, pixel) in pixels.iter_mut().enumerate() {
                     let column = (at[0] + i % 2).checked_sub(left);
                     let row = (at[1] + i / 2).checked_sub(top);
@@ -393,7 +402,11 @@ impl<const N: usize> Exposer<'_, N> {
                         }
                         flown.untimed[index] = mean(pixel.untimed);
                         flown.steady[index] = pixel.steady.map(|sum| sum / samples);
-                        flown.picture[index] = block.pixels[i].image.map(|sum| sum / samples);
+                        flown.picture[index] = if settings.arrivals.flash.is_even() {
+                            block.pixels[i].image.map(|sum| sum / samples)
+                        } else {
+                            flown.in_all(index)
+                        };
                     }
                     pixel.clear();
                 }
@@ -404,13 +417,15 @@ impl<const N: usize> Exposer<'_, N> {
     }
 }
 
-/// The first and the last time (ns) at which more than a thousandth of a camera ray's power arrives,
-/// as some rays all over the picture tell; `None` where none of them sees the photograph.
+/// The first and the last time (ns) at which light arrives, as some rays all over the picture tell: what is as strong as a
+/// twentieth of its ray, and all but a thousandth of all light; `None` where none of them sees the photograph.
 #[must_use]
 pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Option<[f64; 2]> {
     /// Rays across and down.
     const RAYS: [u32; 2] = [64, 48];
-    const LEAST_POWER: f64 = 1e-3;
+    const STRONG: f64 = 0.05;
+    /// What may come before, as a share of all light, and what after.
+    const BESIDE: f64 = 5e-4;
     let camera = &prepared.scene.camera;
     let detection = Detection::UNPOLARIZED;
     let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
@@ -418,10 +433,10 @@ pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Optio
         Delay::Group => tracer.with_group_delays_to(TOLERANCE),
         Delay::Phase => tracer,
     };
-    let all = (0..RAYS[1]).into_par_iter().map_init(
+    let rows = (0..RAYS[1]).into_par_iter().map_init(
         || tracer.clone(),
         |tracer, row| {
-            let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+            let mut found = Vec::new();
             for column in 0..RAYS[0] {
                 let place = |number: u32, count: u32, side: u32| {
                     (f64::from(number) + 0.5) / f64::from(count) * f64::from(side)
@@ -436,17 +451,27 @@ pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Optio
                     };
                     let (time, brightness) = arrivals.of(leaf, distance, &prepared.screen);
                     let power = detection.detected(&leaf.power) * brightness;
-                    if power >= LEAST_POWER && !time.is_nan() {
-                        range = [range[0].min(time), range[1].max(time)];
+                    if power > 0.0 && !time.is_nan() {
+                        found.push((time, power));
                     }
                 }
             }
-            range
+            found
         },
     );
-    let range = all.reduce(
-        || [f64::INFINITY, f64::NEG_INFINITY],
-        |one, other| [one[0].min(other[0]), one[1].max(other[1])],
-    );
-    (range[0] <= range[1]).then_some(range)
+    let mut all: Vec<(f64, f64)> = rows.collect::<Vec<_>>().concat();
+    sort_by_arrival(&mut all);
+    let least = BESIDE * all.iter().map(|(_, power)| power).sum::<f64>();
+    // Where what is strong begins, or more than may be left out.
+    let begin = |all: &[(f64, f64)]| {
+        let mut passed = 0.0;
+        let counts = |(_, power): &&(f64, f64)| {
+            passed += power;
+            *power >= STRONG || passed > least
+        };
+        all.iter().find(counts).map(|(time, _)| *time)
+    };
+    let first = begin(&all)?;
+    all.reverse();
+    Some([first, begin(&all)?])
 }

@@ -305,10 +305,9 @@ pub(super) fn expose<const N: usize>(
     working: &mut Working<N>,
 ) {
     let is_coherent = spectral.fringes.iter().any(|bins| !bins.is_empty());
-    let [ways, ..] = &mut working.ways;
+    let Working { ways: [ways, ..], places, .. } = working;
     find_ways(nodes, 0, ways);
     let count = nodes.count();
-    let Working { ways: [ways, ..], places, .. } = working;
     let mut is_whole = |way: &[Option<usize>]| see(spectral, nodes, way, places);
     if is_coherent && !ways.chunks(count).all(&mut is_whole) {
         expose_fringes(spectral, detection, nodes, spacing, colors, working);
@@ -358,7 +357,7 @@ pub(super) fn expose<const N: usize>(
                 };
                 let all = groups.iter().zip(&lights[begin..]);
                 colors.arrivals.extend(all.map(|(group, light)| {
-                    arrival_of_group(prepared, detection, looked, group, leaves(), *light)
+                    arrival_of_group(spectral, detection, looked, group, leaves(), *light)
                 }));
             }
         } else {
@@ -374,8 +373,8 @@ pub(super) fn expose<const N: usize>(
                     let node = *node;
                     let Some((number, (look, sight))) = looks[node] else { continue };
                     let across = drift(looks, stretch, node);
-                    let spread = across * DRAWN_OUT_BY_NEARNESS;
-                    let at = place_of(look, sight.at + across / 3.0);
+                    let spread = across * SPREAD_BY_NEARNESS;
+                    let at = place_of(look, sight.at + across * MIDDLE_BY_NEARNESS);
                     let steps = sight.steps.map(|step| step * spacing);
                     let prepared = &spectral.nodes[node];
                     let seen = exposure::seen(prepared, look, at, steps, spread);
@@ -384,7 +383,7 @@ pub(super) fn expose<const N: usize>(
                         let screen = (&prepared.screen, leaf.distance_to(&prepared.screen));
                         let power = detection.detected(&leaf.power);
                         let color = light.color * DVec3::from_array(seen) * power;
-                        let power = power * brightness(light);
+                        let power = power * spectral.bands.brightness(light);
                         colors.arrivals.push(Arrival::of(
                             looked,
                             leaf,
@@ -403,9 +402,10 @@ pub(super) fn expose<const N: usize>(
     }
 }
 
-/// A third of the light that goes with a node in proportion to how near it is comes from beyond a third of the way to the
-/// next one; it is as wide as a box of this share of that way.
-const DRAWN_OUT_BY_NEARNESS: f64 = 0.816_496_580_927_726;
+/// Light that goes with a node in proportion to how near it is, from the node itself to the next one, has its middle at this
+/// share of the way between them, and is spread out as a box is of that one, √(2/3).
+const MIDDLE_BY_NEARNESS: f64 = 1.0 / 3.0;
+const SPREAD_BY_NEARNESS: f64 = 0.816_496_580_927_726;
 
 /// By how much the place that a way sees changes from a node to the other end of a stretch; by nothing if the way sees
 /// something else there, or is not taken.
@@ -417,28 +417,21 @@ fn drift(looks: &[Option<(usize, (Look, Sight))>], stretch: &Stretch, node: usiz
     }
 }
 
-/// How bright a white thing is in some light, as a share of all light.
-fn brightness(light: &Light) -> f64 {
-    /// Of red, green and blue (ITU-R BT.709).
-    const BRIGHTNESS: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
-    BRIGHTNESS.dot(light.color * DVec3::ONE)
-}
-
 /// What arrives in the light of a group of wavelengths by a way, whose leaves at all nodes see the same thing.
 fn arrival_of_group<'l, const N: usize>(
-    prepared: &PreparedScene<'_>,
+    spectral: &Spectral<'_>,
     detection: &Detection<N>,
     looked: &Arrivals,
     group: &Group,
     leaves: impl Iterator<Item = &'l Leaf<N>>,
     seen: DVec3,
 ) -> Arrival {
-    let screen = &prepared.screen;
+    let screen = &spectral.nodes[0].screen;
     let (mut power, mut light) = (0.0, DVec3::ZERO);
     let (mut time, mut flash) = (Some(0.0), 0.0);
     for ((leaf, of_node), weight) in leaves.zip(&group.lights).zip(&group.middle) {
         let of_leaf = detection.detected(&leaf.power);
-        power += of_leaf * brightness(of_node);
+        power += of_leaf * spectral.bands.brightness(of_node);
         light += of_node.color * seen * of_leaf;
         let arrives = match (leaf.body(), leaf.distance_to(screen)) {
             (None, Some(distance)) => Some(looked.of(leaf, distance, screen)),
