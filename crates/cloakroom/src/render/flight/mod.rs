@@ -429,37 +429,26 @@ pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Optio
     let camera = &prepared.scene.camera;
     let detection = Detection::UNPOLARIZED;
     let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
-    let tracer = match arrivals.delay {
+    let mut tracer = match arrivals.delay {
         Delay::Group => tracer.with_group_delays_to(TOLERANCE),
         Delay::Phase => tracer,
     };
-    let rows = (0..RAYS[1]).into_par_iter().map_init(
-        || tracer.clone(),
-        |tracer, row| {
-            let mut found = Vec::new();
-            for column in 0..RAYS[0] {
-                let place = |number: u32, count: u32, side: u32| {
-                    (f64::from(number) + 0.5) / f64::from(count) * f64::from(side)
-                };
-                let [width, height] = camera.resolution;
-                let ray = camera.ray(place(column, RAYS[0], width), place(row, RAYS[1], height));
-                let (leaves, _) = tracer.trace(&detection.launch(camera, &ray));
-                for leaf in leaves {
-                    let distance = leaf.distance_to(&prepared.screen);
-                    let Some(distance) = distance.filter(|_| leaf.body().is_none()) else {
-                        continue;
-                    };
-                    let (time, brightness) = arrivals.of(leaf, distance, &prepared.screen);
-                    let power = detection.detected(&leaf.power) * brightness;
-                    if power > 0.0 && !time.is_nan() {
-                        found.push((time, power));
-                    }
-                }
+    let place = |number: u32, axis: usize| {
+        (f64::from(number) + 0.5) / f64::from(RAYS[axis]) * f64::from(camera.resolution[axis])
+    };
+    let mut all = Vec::new();
+    for number in 0..RAYS[0] * RAYS[1] {
+        let ray = camera.ray(place(number % RAYS[0], 0), place(number / RAYS[0], 1));
+        let (leaves, _) = tracer.trace(&detection.launch(camera, &ray));
+        for leaf in leaves.iter().filter(|leaf| leaf.body().is_none()) {
+            let Some(distance) = leaf.distance_to(&prepared.screen) else { continue };
+            let (time, brightness) = arrivals.of(leaf, distance, &prepared.screen);
+            let power = detection.detected(&leaf.power) * brightness;
+            if power > 0.0 && !time.is_nan() {
+                all.push((time, power));
             }
-            found
-        },
-    );
-    let mut all: Vec<(f64, f64)> = rows.collect::<Vec<_>>().concat();
+        }
+    }
     sort_by_arrival(&mut all);
     let least = BESIDE * all.iter().map(|(_, power)| power).sum::<f64>();
     // Where what is strong begins, or more than may be left out.
