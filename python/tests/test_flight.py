@@ -1,5 +1,10 @@
 """Light in flight."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -61,3 +66,18 @@ def test_a_pulse_is_drawn_from_the_side():
     assert cloak.diagram(pulse=0.7).svg != cloak.diagram(pulse=0.7, delay="phase").svg
     with pytest.raises(ValueError, match="delay"):
         cloak.diagram(pulse=0.7, delay="late")
+
+
+@pytest.mark.skipif(not hasattr(os, "wait4"), reason="it takes Unix to know how much memory a program took")
+def test_a_large_film_takes_little_memory(executable: Path, paper, tmp_path: Path) -> None:
+    """A cube of 640 x 480 pixels at 256 times, which takes 1.3 GB as a file."""
+    cube = tmp_path / "cube.npz"
+    words = ["--size", "640x480", "--samples", "1", "--delay", "phase", "--gate", "4.9..10:0.02", "-o", str(cube)]
+    process = subprocess.Popen([executable, "flight", paper("6c"), *words])
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    assert process.returncode == 0
+    assert cube.stat().st_size > 640 * 480 * 256 * 16
+    cube.unlink()
+    # Linux counts kB.
+    assert used.ru_maxrss * (1024 if sys.platform == "linux" else 1) < 512e6

@@ -35,7 +35,14 @@ pub fn run(arguments: &DiagramArguments) -> Result<()> {
 
 /// Draws it once.
 fn draw(arguments: &DiagramArguments, pulse: Option<Pulse>) -> Result<()> {
-    let formats = formats(&arguments.outputs, DrawingFormat::of)?;
+    let formats = formats(&arguments.outputs, DrawingFormat::of).map_err(|failure| {
+        match (failure, arguments.outputs.iter().any(|path| FilmFormat::of(path).is_ok())) {
+            (Failure::Failed(message), true) => Failure::Failed(format!(
+                "{message}; for a film, give --pulse without a time, or times as in -0.5..1.5:0.02"
+            )),
+            (failure, _) => failure,
+        }
+    })?;
     let loaded = scene::load(&arguments.scene, &[])?;
     check_outputs(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
     let _busy = interruption::busy();

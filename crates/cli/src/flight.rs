@@ -25,27 +25,35 @@ enum FlightFormat {
 
 /// Looks at light in flight and writes every file asked for.
 pub fn run(arguments: &FlightArguments) -> Result<()> {
-    let formats: Vec<(&Path, FlightFormat)> = arguments
-        .outputs
-        .iter()
-        .map(|path| Ok((path.as_path(), format(path)?)))
-        .collect::<Result<_>>()?;
+    let outputs = arguments.outputs.iter();
+    let formats = outputs.map(|path| format(path)).collect::<Result<Vec<_>>>()?;
     let text = scene::text(&arguments.scene.scene)?;
     let overrides = scene::overrides(&text, &arguments.scene, &arguments.picture)?;
     let loaded = scene::load_with(&arguments.scene, &text, &overrides)?;
     scene::use_threads(&arguments.threads)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
-    let settings = settings(arguments, &prepared)?;
     let inputs = scene::inputs(&arguments.scene, &loaded);
-    let files = arguments
-        .outputs
-        .iter()
-        .filter(|path| format(path).is_ok_and(|it| it != FlightFormat::Film(FilmFormat::Frames)));
-    check_outputs(files, &inputs)?;
-    let _busy = interruption::busy();
+    let files = arguments.outputs.iter().zip(&formats);
+    let files = files.filter(|(_, format)| **format != FlightFormat::Film(FilmFormat::Frames));
+    check_outputs(files.map(|(path, _)| path), &inputs)?;
     let folder = arguments.outputs[0].parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
+    let _busy = interruption::busy();
+    let settings = settings(arguments, &prepared)?;
     let store = FlightStore::new(folder, loaded.scene.camera.resolution, settings.gate)?;
+    let all_formats = arguments.outputs.iter().zip(formats);
+    let kinds = all_formats.map(|(path, format)| {
+        Ok((
+            path.as_path(),
+            match format {
+                FlightFormat::Arrays => None,
+                FlightFormat::Film(film) => {
+                    Some((film, FrameFolder::of_film(path, film, settings.gate.bins())?))
+                }
+            },
+        ))
+    });
+    let outputs: Vec<(&Path, Option<(FilmFormat, FrameFolder)>)> = kinds.collect::<Result<_>>()?;
     let stats = supervised(render::flight_steps(&prepared), "rendering", |_, supervision| {
         render::flight(&prepared, &settings, supervision, |tile| {
             store.put(&tile).map_err(|error| {
@@ -58,13 +66,13 @@ pub fn run(arguments: &FlightArguments) -> Result<()> {
     tell_what_is_beside(&store, &settings.gate);
     let mut metadata = prepared.metadata();
     metadata.extend(words(&settings));
-    all(formats.iter().map(|(path, format)| match format {
-        FlightFormat::Arrays => {
+    all(outputs.into_iter().map(|(path, of_film)| match of_film {
+        None => {
             let order =
                 if arguments.time_last { FlightOrder::TimeLast } else { FlightOrder::TimeFirst };
             Ok(store.write_npz(path, order, &metadata)?)
         }
-        FlightFormat::Film(format) => film(arguments, &store, (path, *format), &metadata),
+        Some((format, frames)) => film(arguments, &store, (path, format), &frames, &metadata),
     }))
 }
 
@@ -119,7 +127,7 @@ fn words(settings: &FlightSettings) -> Vec<(String, String)> {
         ("gate", gate.to_string()),
         ("pulse", width.to_string()),
         ("delay", arrivals.delay.name().to_owned()),
-        ("flash", format!("{:?}", arrivals.flash)),
+        ("flash", arrivals.flash.to_string()),
     ]
     .map(|(key, words)| (key.to_owned(), words))
     .to_vec()
@@ -130,10 +138,10 @@ fn film(
     arguments: &FlightArguments,
     store: &FlightStore,
     (path, format): (&Path, FilmFormat),
+    frames: &FrameFolder,
     metadata: &[(String, String)],
 ) -> Result<()> {
     let bins = store.gate().bins();
-    let frames = FrameFolder::of_film(path, format, bins)?;
     // As bright as in the picture, where a pulse arrives in the middle of a bin.
     let as_in_picture = match arguments.accumulate {
         true => 1.0,
@@ -144,11 +152,11 @@ fn film(
         accumulated: arguments.accumulate,
     };
     supervised(bins as u64, "frames", |_, supervision| {
-        flight_frames(store, &look, &frames, metadata, supervision)
+        flight_frames(store, &look, frames, metadata, supervision)
     })?;
     if format == FilmFormat::Frames {
         return Ok(());
     }
     let (rate, keep_frames) = (arguments.fps, arguments.keep_frames);
-    Written { path, format, rate, metadata, keep_frames }.write(&frames)
+    Written { path, format, rate, metadata, keep_frames }.write(frames)
 }

@@ -75,6 +75,8 @@ fn a_gate_is_found_and_light_outside_of_one_is_told() {
 #[test]
 fn what_cannot_be_is_refused() {
     let folder = folder();
+    // Before it is looked for when light arrives.
+    fs::write(folder.path().join("a.gif.frames"), "").unwrap();
     for (words, message) in [
         (vec!["-o", "a.gif", "--gate", "5..4:1"], "the gate 5..4:1 has no bins"),
         (vec!["-o", "a.gif", "--gate", "5"], "write START..END:STEP in ns"),
@@ -82,13 +84,14 @@ fn what_cannot_be_is_refused() {
         (vec!["-o", "a.gif", "--pulse=-1"], "write ns, from 0"),
         (vec!["-o", "a.avi"], "use .npz, .gif"),
         (vec!["-o", "nowhere/a.npz"], "there is no folder nowhere"),
+        (vec!["-o", "a.gif"], "cannot make the folder a.gif.frames"),
         (vec!["-o", "a.npz", "-o", "a.npz"], "another output of this run is that file"),
     ] {
         let output = flight(folder.path(), &words);
         assert!(!output.status.success() && output.stdout.is_empty(), "{words:?} {output:?}");
         assert!(said(&output).contains(message), "{words:?}: {}", said(&output));
     }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }
 
 fn diagram(folder: &Path, arguments: &[&str]) -> Output {
@@ -124,6 +127,11 @@ fn a_pulse_is_filmed_from_the_side() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 5);
     for (words, message) in [
         (vec!["--pulse", "-o", "c.svg"], "give --pulse a single time"),
+        (
+            vec!["--pulse", "0.5", "-o", "c.gif"],
+            "for a film, give --pulse without a time, or times",
+        ),
+        (vec!["-o", "c.gif"], "for a film, give --pulse without a time, or times"),
         (vec!["--pulse", "soon", "-o", "c.svg"], "write ns, as in 1.2, or START..END:STEP"),
         (vec!["--pulse", "2..1:1", "-o", "c.gif"], "the gate 2..1:1 has no bins"),
         (vec!["--pulse", "1", "--setting", "-o", "c.svg"], "cannot be used with"),

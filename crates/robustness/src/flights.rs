@@ -1,4 +1,4 @@
-//! Light in flight: all of it is in some bin or beside them, and it arrives when the maps of times say.
+//! Light in flight: all of it is in some bin or beside them, as much as the maps say, and it arrives when they say.
 
 use crate::draws::Draws;
 use crate::scenes::scene_seen;
@@ -28,6 +28,15 @@ const BINS: usize = 40;
 /// What sums may be off by: of light that is 1 where it is brightest.
 const CLOSED: f64 = 1e-12;
 
+/// Light of one wavelength (nm), and lamps.
+const SPECTRA: [(&str, Option<f64>); 5] = [
+    ("\"rgb\"", None),
+    ("\"D65\"", None),
+    ("{ black_body_k = 2856 }", None),
+    ("650", Some(650.0)),
+    ("{ lines = [{ wavelength_nm = 436, power = 2 }] }", Some(436.0)),
+];
+
 /// What times may be off by, cm of vacuum: ways are interpolated where a picture is made, and not where
 /// light is timed; and what pulses take is worked out less exactly.
 const INTERPOLATED: f64 = 1e-6;
@@ -37,10 +46,10 @@ const OF_PULSES: f64 = 1e-4;
 ///
 /// # Panics
 ///
-/// If light is missing, or comes at another time than the map of times has it.
+/// If light is missing, or the maps have other light or another time.
 pub fn fly(draws: &mut Draws<'_>) -> u64 {
     let found = (1..=MOST_DRAWN).find_map(|drawn| sound(draws).map(|sound| (drawn, sound)));
-    let Some((drawn, (text, loaded))) = found else { return MOST_DRAWN };
+    let Some((drawn, (text, nm, loaded))) = found else { return MOST_DRAWN };
     let delay = if draws.chance(128) { Delay::Group } else { Delay::Phase };
     // The whole flight, or a part of it.
     let part =
@@ -58,13 +67,18 @@ pub fn fly(draws: &mut Draws<'_>) -> u64 {
     let picture =
         render(&prepared, ChannelSet::Everything, &supervision).expect("a picture").picture;
     let channel = |name: &str| &picture.channel(name).expect("a channel").samples;
+    let delivered = channel("delivered");
     let times = channel(match delay {
         Delay::Group => "group_delay",
         Delay::Phase => "time_of_flight",
     });
     let pixels = cube.size[0] * cube.size[1];
-    // Each color arrives at its own time then, and the map is of one.
-    let is_colored = loaded.scene.devices.iter().any(DeviceSettings::is_dispersive);
+    // Each color goes its own way at its own time then, and the map is of one.
+    let structures = || prepared.assembly.devices().iter().map(|device| &device.structure);
+    let changes = loaded.scene.devices.iter().any(DeviceSettings::is_dispersive)
+        || prepared.assembly.absorbs()
+        || structures().any(|structure| structure.films.iter().flatten().next().is_some());
+    let is_colored = nm.is_none() && changes;
     for pixel in 0..pixels {
         let told = || format!("pixel {pixel}, {settings:?}:\n{text}");
         let bins = || (pixel..cube.light.len()).step_by(pixels);
@@ -77,8 +91,13 @@ pub fn fly(draws: &mut Draws<'_>) -> u64 {
         }
         let power: f64 = bins().map(|bin| cube.power[bin]).sum();
         let beside: f64 = cube.beside.iter().map(|all| all[pixel][3]).sum();
+        if is_colored {
+            continue;
+        }
+        let (all, wanted) = (power + beside, delivered.get(pixel));
+        assert!((all - wanted).abs() < INTERPOLATED, "{all} and not {wanted}: {}", told());
         let time = times.get(pixel);
-        if is_colored || beside != 0.0 || power < CLOSED || !time.is_finite() {
+        if beside != 0.0 || power < CLOSED || !time.is_finite() {
             continue;
         }
         let moments = gate.middles().into_iter().zip(bins());
@@ -92,8 +111,8 @@ pub fn fly(draws: &mut Draws<'_>) -> u64 {
     (2 * SAMPLES * SIZE[0] * SIZE[1]).unsigned_abs()
 }
 
-/// A random scene, if it is not refused, and its text.
-fn sound(draws: &mut Draws<'_>) -> Option<(String, Loaded)> {
+/// A random scene, if it is not refused: its text, the wavelength (nm) of its light, if it is one, and the scene.
+fn sound(draws: &mut Draws<'_>) -> Option<(String, Option<f64>, Loaded)> {
     let mut scene = scene_seen(draws, SIZE, SAMPLES);
     // Coarser ways differ by more than is looked for.
     let trace: [(_, Value); 1] = [("tolerance", 1e-8.into())];
@@ -102,7 +121,9 @@ fn sound(draws: &mut Draws<'_>) -> Option<(String, Loaded)> {
         let keys = keys.map(|(key, value)| (key.to_owned(), value));
         scene.insert(table.to_owned(), Value::Table(Table::from_iter(keys)));
     }
-    let text = scene.to_string();
+    let (spectrum, nm) = draws.pick(&SPECTRA);
+    let of_maps = nm.map_or(String::new(), |nm| format!("wavelength_nm = {nm}\n"));
+    let text = format!("{scene}[light]\nspectrum = {spectrum}\n{of_maps}");
     let loaded = scene_file::parse(&text, "soak", Path::new("/nowhere"), &[]).ok()?;
-    PreparedScene::new(&loaded.scene).is_ok().then_some((text, loaded))
+    PreparedScene::new(&loaded.scene).is_ok().then_some((text, *nm, loaded))
 }

@@ -206,19 +206,13 @@ fn stretches(nodes_nm: &[f64], samples: &[Sample]) -> Vec<Stretch> {
         let held = samples.iter().filter(|sample| {
             nodes_nm.iter().take_while(|node| **node >= sample.nm).count() == before
         });
-        let share = |node: usize, nm: f64| match before {
-            0 => 1.0,
-            _ if before > last => 1.0,
-            _ => {
-                let [long, short] = [nodes_nm[before - 1], nodes_nm[before]];
-                let of_short = (long - nm) / (long - short);
-                if node == before { of_short } else { 1.0 - of_short }
-            }
+        let first = before.saturating_sub(1);
+        let nodes = &nodes_nm[first..=before.min(last)];
+        let of_node = |i: usize| {
+            let share = |sample: &Sample| (linear_weights(nodes, sample.nm)[i], *sample);
+            (first + i, light(held.clone().map(share)))
         };
-        let of_node = |node: usize| {
-            (node, light(held.clone().map(|sample| (share(node, sample.nm), *sample))))
-        };
-        Stretch { lights: (before.saturating_sub(1)..=before.min(last)).map(of_node).collect() }
+        Stretch { lights: (0..nodes.len()).map(of_node).collect() }
     };
     (0..=nodes_nm.len()).map(stretch).collect()
 }
@@ -275,13 +269,18 @@ fn even_nodes(count: usize, [shortest, longest]: [f64; 2]) -> Vec<f64> {
     (0..count).map(|i| longest - step * i as f64).collect()
 }
 
-/// The weights of nodes (wavelengths, nm; the longest first) at a wavelength among them, linear between neighbours.
+/// The weights of nodes (wavelengths, nm; the longest first) at a wavelength, linear between neighbours; beyond the last
+/// ones, as there.
 fn linear_weights(nodes_nm: &[f64], nm: f64) -> Vec<f64> {
     let mut weights = vec![0.0; nodes_nm.len()];
-    let after = nodes_nm.partition_point(|node| *node >= nm).clamp(1, nodes_nm.len() - 1);
-    let [long, short] = [nodes_nm[after - 1], nodes_nm[after]];
-    weights[after] = (long - nm) / (long - short);
-    weights[after - 1] = 1.0 - weights[after];
+    let after = nodes_nm.partition_point(|node| *node >= nm);
+    if after == 0 || after == nodes_nm.len() {
+        weights[after.saturating_sub(1)] = 1.0;
+    } else {
+        let [long, short] = [nodes_nm[after - 1], nodes_nm[after]];
+        weights[after] = (long - nm) / (long - short);
+        weights[after - 1] = 1.0 - weights[after];
+    }
     weights
 }
 

@@ -139,15 +139,7 @@ pub(super) enum Look {
     Surroundings,
 }
 
-/// Where a leaf looks: a place (u, v) on the photograph, a point of a body's surface, or a direction.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sight {
-    pub at: DVec3,
-    /// What that changes by from a pixel to the next, across the picture and down.
-    pub steps: [DVec3; 2],
-}
-
-/// Where a leaf looks.
+/// What a leaf sees something of, and where: a place (u, v) on the photograph, a point of a body's surface, or a direction.
 pub(super) fn place<const N: usize>(prepared: &PreparedScene<'_>, leaf: &Leaf<N>) -> (Look, DVec3) {
     match (leaf.body(), leaf.distance_to(&prepared.screen)) {
         (Some(body), _) => (Look::Body(body), leaf.position),
@@ -160,19 +152,20 @@ pub(super) fn place<const N: usize>(prepared: &PreparedScene<'_>, leaf: &Leaf<N>
     }
 }
 
-/// Where a leaf of a ray looks and how far from there its neighbours do, given the ray and those across and down.
-pub(super) fn look<const N: usize>(
+/// What the [`place`] where a leaf of a ray looks changes by from a pixel to the next, across the picture and down, given
+/// the ray and those across and down.
+pub(super) fn steps<const N: usize>(
     prepared: &PreparedScene<'_>,
     [here, across, down]: [&Traced<'_, N>; 3],
     number: usize,
-) -> (Look, Sight) {
+    (look, at): (Look, DVec3),
+) -> [DVec3; 2] {
     let leaf = &here.leaves[number];
     let beside =
         [across, down].map(|neighbour| Neighbour { here, number, leaf, neighbour, alone: None });
     let lines =
         || beside.each_ref().map(|beside| beside.twin_line().unwrap_or_else(|| beside.moved()));
-    let (look, at) = place(prepared, leaf);
-    let steps = match look {
+    match look {
         Look::Body(body) => {
             let normal = prepared.body_surface(body).and_then(|body| body.normal(leaf.position));
             normal.map_or([DVec3::ZERO; 2], |normal| {
@@ -192,8 +185,7 @@ pub(super) fn look<const N: usize>(
             Surroundings::Color(_) => [DVec3::ZERO; 2],
             Surroundings::Image(_) => lines().map(|line| line.direction - leaf.direction),
         },
-    };
-    (look, Sight { at, steps })
+    }
 }
 
 /// The light that is seen there, through a filter as wide as these steps, and drawn out further by a `spread`.

@@ -15,6 +15,7 @@ use optics::wave::unit;
 
 pub use camera::{Camera, CameraRay};
 pub use polarizer::Polarizer;
+pub(crate) use spectrum::SPECTRUM;
 pub use spectrum::{LampSpectrum, SpectralLine, Spectrum, SpectrumWord};
 pub use tables::{
     Border, CameraSettings, Colormap, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel,

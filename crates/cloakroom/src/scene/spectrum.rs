@@ -5,7 +5,8 @@ use crate::keys::{Field, KeyError, KeyKind, Sampled, Value, ValueRange, VisitFil
 use cloakroom_trace::{choice, table};
 
 // Where an error is, in the table of the light.
-const SPECTRUM: &str = "spectrum";
+/// Its key in `[light]`.
+pub(crate) const SPECTRUM: &str = "spectrum";
 const LINES: &str = "spectrum.lines";
 const TABLE: &str = "spectrum.table";
 

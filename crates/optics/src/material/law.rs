@@ -97,10 +97,12 @@ pub enum IndexLawError {
         range_um: [f64; 2],
     },
     /// It gives no number, or one that no medium has.
-    #[error("its law gives no index at {} nm", nm(*wavelength_um))]
+    #[error("its law gives n = {}, k = {} at {} nm, which no medium has: neither is negative, nor are both 0", index.re, index.im, nm(*wavelength_um))]
     NoIndex {
         /// The wavelength, µm.
         wavelength_um: f64,
+        /// What it gives.
+        index: Complex64,
     },
 }
 
@@ -147,7 +149,7 @@ impl IndexLaw {
         if is_index && re.is_finite() && im.is_finite() && refraction.group_index.is_finite() {
             Ok(refraction)
         } else {
-            Err(IndexLawError::NoIndex { wavelength_um })
+            Err(IndexLawError::NoIndex { wavelength_um, index: refraction.index })
         }
     }
 }

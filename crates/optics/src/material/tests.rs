@@ -117,3 +117,19 @@ fn measured_indices_are_joined_by_lines() {
     let message = silver.at(3.0).expect_err("out of range").to_string();
     assert_eq!(message, "its law holds from 187.9 to 1937 nm, and the wavelength is 3000 nm");
 }
+
+#[test]
+fn what_no_medium_has_is_told_with_its_numbers() {
+    let table = |values: &[f64]| Table {
+        wavelengths_um: vec![0.5, 1.0].into(),
+        values: values.to_vec().into(),
+    };
+    let law = IndexLaw {
+        range_um: [0.5, 1.0],
+        dispersion: Dispersion::Table(table(&[1.5, 1.5])),
+        extinction: Some(table(&[0.5, -1.0])),
+    };
+    assert_eq!(law.at(0.625).expect("a medium").index.im, 0.125);
+    let error = law.at(0.75).expect_err("no medium").to_string();
+    assert!(error.contains("n = 1.5, k = -0.25") && error.contains("750 nm"), "{error}");
+}

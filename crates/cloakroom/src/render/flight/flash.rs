@@ -3,6 +3,7 @@
 use crate::assembly::Screen;
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
+use std::fmt;
 use std::str::FromStr;
 
 /// What flashes, at the time 0.
@@ -49,6 +50,20 @@ impl Flash {
     }
 }
 
+/// As it is written.
+impl fmt::Display for Flash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Photograph => f.write_str("photograph"),
+            Self::PlaneWave(DVec3 { x, y, z }) => write!(f, "plane:{x},{y},{z}"),
+            Self::Point(DVec3 { x, y, z }) => write!(f, "point:{x},{y},{z}"),
+            Self::Spot { middle: DVec3 { x, y, z }, radius } => {
+                write!(f, "spot:{x},{y},{z},{radius}")
+            }
+        }
+    }
+}
+
 /// What is wrong with a flash: it is not written as one.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
@@ -79,5 +94,17 @@ impl FromStr for Flash {
             _ => None,
         }
         .ok_or_else(|| FlashError(text.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flash_is_read_as_it_is_written() {
+        for text in ["photograph", "plane:1,-0.5,0", "point:50,0,30.25", "spot:20,5,-5,2"] {
+            assert_eq!(text.parse().map(|flash: Flash| flash.to_string()), Ok(text.to_owned()));
+        }
     }
 }

@@ -12,14 +12,15 @@
 
 use super::block_tracer::MOST_TRACERS;
 use super::detection::Detection;
-use super::exposure::{self, Look, Sight, Traced};
+use super::exposure::{self, Look, Traced};
 use super::flight::{Arrival, Arrivals};
 use super::pixel::Pixel;
 use super::prepared_scene::{PreparedScene, PreparedSceneError};
 use crate::color::{
     BINS, Bands, Fringe, Group, Interpolation, Lamp, Light, Stretch, chebyshev_nodes, weights,
 };
-use crate::scene::{DeviceSettings, Scene};
+use crate::keys::KeyError;
+use crate::scene::{DeviceSettings, SPECTRUM, Scene};
 use crate::trace::{Coherence, Leaf};
 use glam::{DMat3, DVec3};
 use optics::interface::FilmLayer;
@@ -92,7 +93,13 @@ impl<'s> Spectral<'s> {
         let scene = prepared.scene;
         let is_dispersive = scene.devices.iter().any(DeviceSettings::is_dispersive);
         let lamp = scene.light.spectrum.lamp(is_dispersive).map_err(PreparedSceneError::Light)?;
-        let Some(lamp) = lamp else { return Ok(None) };
+        let Some(lamp) = lamp else {
+            let message = "light of red, green and blue has no spectrum, for which picture.channels asks; write \
+                           spectrum = \"D65\", or leave that channel out";
+            let refused =
+                KeyError::refuse_if(scene.picture.asks_for("spectrum"), SPECTRUM, message);
+            return refused.map_err(PreparedSceneError::Light).map(|()| None);
+        };
         let assembly = &prepared.assembly;
         let films =
             || assembly.devices().iter().flat_map(|device| &device.structure.films).flatten();
@@ -244,7 +251,7 @@ pub(super) struct Working<const N: usize> {
     /// Where a way looks at each node.
     places: Vec<DVec3>,
     /// The same of a way that is not taken at all nodes, with the number of the leaf.
-    looks: Vec<Option<(usize, (Look, Sight))>>,
+    looks: Vec<Option<View>>,
     /// The leaves of three rays in the light of a bin.
     leaves: [Vec<Leaf<N>>; 3],
     exposure: exposure::Working,
@@ -262,6 +269,17 @@ impl<const N: usize> Default for Working<N> {
             exposure: exposure::Working::default(),
         }
     }
+}
+
+/// What a way sees at a node.
+#[derive(Clone, Copy, Debug)]
+struct View {
+    /// The number of its leaf.
+    leaf: usize,
+    look: Look,
+    /// The [place](exposure::place), and what that changes by to the pixels across and down.
+    at: DVec3,
+    steps: [DVec3; 2],
 }
 
 /// The rays of a block in the light of each node, of which one pixel is looked at.
@@ -308,7 +326,7 @@ pub(super) fn expose<const N: usize>(
     let Working { ways: [ways, ..], places, .. } = working;
     find_ways(nodes, 0, ways);
     let count = nodes.count();
-    let mut is_whole = |way: &[Option<usize>]| see(spectral, nodes, way, places);
+    let mut is_whole = |way: &[Option<usize>]| see(spectral, nodes, way, places).is_some();
     if is_coherent && !ways.chunks(count).all(&mut is_whole) {
         expose_fringes(spectral, detection, nodes, spacing, colors, working);
         return;
@@ -319,23 +337,23 @@ pub(super) fn expose<const N: usize>(
     for way in 0..ways.len() / count {
         let numbers = way * count..(way + 1) * count;
         let leaves = |node: usize| nodes.ray(node, 0).leaves;
-        let look = |node: usize, number: usize| {
+        let steps = |node: usize, leaf: usize, place: (Look, DVec3)| {
             let rays = [0, 1, 2].map(|ray| nodes.ray(node, ray));
-            exposure::look(&spectral.nodes[node], rays, number)
+            exposure::steps(&spectral.nodes[node], rays, leaf, place)
         };
-        if see(spectral, nodes, &ways[numbers.clone()], places) {
+        if let Some(look) = see(spectral, nodes, &ways[numbers.clone()], places) {
             let prepared = &spectral.nodes[0];
             let power = ways[way * count].map_or(0.0, |number| leaves(0)[number].largest_power());
             let middle = spectral.bands.middle_node;
             let Some(number) = ways[way * count + middle] else { continue };
-            let (what, Sight { steps, .. }) = look(middle, number);
+            let steps = steps(middle, number, (look, places[middle]));
             let Some(level) = level(&spectral.bands, places, steps, power) else { continue };
             let steps = steps.map(|step| step * spacing);
             let groups = &spectral.bands.levels[level];
             let begin = lights.len();
             views.push((level, begin));
             for group in groups {
-                let light = light_of(prepared, group, (what, places), steps);
+                let light = light_of(prepared, group, (look, places), steps);
                 lights.push(DVec3::from_array(light));
             }
             for (node, number) in numbers.enumerate() {
@@ -362,23 +380,22 @@ pub(super) fn expose<const N: usize>(
             }
         } else {
             looks.clear();
-            looks.extend(
-                ways[numbers]
-                    .iter()
-                    .enumerate()
-                    .map(|(node, number)| number.map(|number| (number, look(node, number)))),
-            );
+            looks.extend(ways[numbers].iter().enumerate().map(|(node, leaf)| {
+                let leaf = (*leaf)?;
+                let (look, at) = exposure::place(&spectral.nodes[node], &leaves(node)[leaf]);
+                Some(View { leaf, look, at, steps: steps(node, leaf, (look, at)) })
+            }));
             for stretch in &spectral.bands.stretches {
                 for (node, light) in &stretch.lights {
                     let node = *node;
-                    let Some((number, (look, sight))) = looks[node] else { continue };
+                    let Some(View { leaf, look, at, steps }) = looks[node] else { continue };
                     let across = drift(looks, stretch, node);
                     let spread = across * SPREAD_BY_NEARNESS;
-                    let at = place_of(look, sight.at + across * MIDDLE_BY_NEARNESS);
-                    let steps = sight.steps.map(|step| step * spacing);
+                    let at = place_of(look, at + across * MIDDLE_BY_NEARNESS);
+                    let steps = steps.map(|step| step * spacing);
                     let prepared = &spectral.nodes[node];
                     let seen = exposure::seen(prepared, look, at, steps, spread);
-                    let leaf = &leaves(node)[number];
+                    let leaf = &leaves(node)[leaf];
                     if let Some(looked) = &detection.arrivals {
                         let screen = (&prepared.screen, leaf.distance_to(&prepared.screen));
                         let power = detection.detected(&leaf.power);
@@ -409,10 +426,10 @@ const SPREAD_BY_NEARNESS: f64 = 0.816_496_580_927_726;
 
 /// By how much the place that a way sees changes from a node to the other end of a stretch; by nothing if the way sees
 /// something else there, or is not taken.
-fn drift(looks: &[Option<(usize, (Look, Sight))>], stretch: &Stretch, node: usize) -> DVec3 {
+fn drift(looks: &[Option<View>], stretch: &Stretch, node: usize) -> DVec3 {
     let there = stretch.lights.iter().find(|(other, _)| *other != node);
     match (looks[node], there.and_then(|(other, _)| looks[*other])) {
-        (Some((_, (look, here))), Some((_, (other, there)))) if look == other => there.at - here.at,
+        (Some(here), Some(there)) if here.look == there.look => there.at - here.at,
         _ => DVec3::ZERO,
     }
 }
@@ -448,22 +465,25 @@ fn arrival_of_group<'l, const N: usize>(
     }
 }
 
-/// Whether a way is taken at every node, and sees the same thing there: the places of it.
+/// What a way sees, and the places of it at every node, if it is taken at all of them and sees the same there.
 fn see<const N: usize>(
     spectral: &Spectral<'_>,
     nodes: Nodes<'_, N>,
     way: &[Option<usize>],
     places: &mut Vec<DVec3>,
-) -> bool {
+) -> Option<Look> {
     places.clear();
     let mut first = None;
-    way.iter().enumerate().all(|(node, number)| {
-        let Some(number) = *number else { return false };
-        let leaf = &nodes.ray(node, 0).leaves[number];
+    for (node, number) in way.iter().enumerate() {
+        let leaf = &nodes.ray(node, 0).leaves[(*number)?];
         let (look, place) = exposure::place(&spectral.nodes[node], leaf);
         places.push(place);
-        *first.get_or_insert((leaf.end, look)) == (leaf.end, look)
-    })
+        let seen = (leaf.end, look);
+        if *first.get_or_insert(seen) != seen {
+            return None;
+        }
+    }
+    first.map(|(_, look)| look)
 }
 
 /// Adds to a pixel what leaves that interfere see more or less than each alone, bin by bin of fringes. All

@@ -53,6 +53,14 @@ const PRISM: &str = "[camera]\nresolution = [40, 30]\nsamples = 4\nfield_of_view
     [[device]]\nkind = \"prisms\"\nrotation = 25\n\
     [[device.prism]]\ncorners = [[-9, -16], [9, -16], [0, 16]]\nmaterial = \"sf11\"\n";
 
+/// Holds a picture of a scene, whose light is that of a lamp, against that of all its wavelengths: what it may be off by, in
+/// the mean and at most.
+fn is_the_sum(scene: &Scene, lamp: &Lamp, [mean, largest]: [f64; 2]) {
+    let found = colors(&PreparedScene::new(scene).expect("sound"));
+    let off = differences(&found, &brute_force(scene, lamp));
+    assert!(off[0] < mean && off[1] < largest, "{off:?} in {:?}", scene.light);
+}
+
 #[test]
 fn a_picture_is_the_sum_of_those_of_all_wavelengths() {
     for (spectrum, lamp) in [
@@ -61,12 +69,9 @@ fn a_picture_is_the_sum_of_those_of_all_wavelengths() {
         ("{ black_body_k = 2856 }", Lamp::BlackBody(2856.0)),
     ] {
         let scene = scene(&format!("{PRISM}[light]\nspectrum = {spectrum}\n"));
-        let wanted = brute_force(&scene, &lamp);
-        let found = colors(&PreparedScene::new(&scene).expect("sound"));
         // Groups of wavelengths share a look as wide as a pixel; the largest differences are in pixels in which
         // light of some wavelengths takes a way that others do not.
-        let [mean, largest] = differences(&found, &wanted);
-        assert!(mean < 7e-3 && largest < 7e-2, "{spectrum}: {mean:e}, {largest:e}");
+        is_the_sum(&scene, &lamp, [7e-3, 7e-2]);
     }
 }
 
@@ -87,10 +92,7 @@ fn a_design_is_what_it_is_at_each_wavelength() {
              [light]\nspectrum = {spectrum}\n\
              [[device]]\nkind = \"square-cloak\"\ndispersion = \"{law}\"\n"
         ));
-        let wanted = brute_force(&scene, &lamp);
-        let found = colors(&PreparedScene::new(&scene).expect("sound"));
-        let [mean, largest] = differences(&found, &wanted);
-        assert!(mean < 1e-2 && largest < 7e-2, "{law} {spectrum}: {mean:e}, {largest:e}");
+        is_the_sum(&scene, &lamp, [1e-2, 7e-2]);
     }
 }
 
@@ -114,13 +116,28 @@ fn laws_that_hold_in_nearly_all_light_do_in_daylight() {
 }
 
 #[test]
+fn red_green_and_blue_have_no_spectrum() {
+    let pane = "[[device]]\nkind = \"body\"\nshape = \"sphere\"\nradius = 9\n";
+    let asked = "[picture]\nchannels = [\"spectrum\"]\n";
+    for (medium, light) in
+        [("index = 1.5", "rgb"), ("index = 1.5", "auto"), ("material = \"bk7\"", "rgb")]
+    {
+        let scene = scene(&format!("{asked}[light]\nspectrum = \"{light}\"\n{pane}{medium}\n"));
+        let error = PreparedScene::new(&scene).expect_err("there is none").to_string();
+        assert!(error.contains("spectrum = \"D65\""), "{error}");
+    }
+    for (medium, light) in [("index = 1.5", "D65"), ("material = \"bk7\"", "auto")] {
+        let scene = scene(&format!("{asked}[light]\nspectrum = \"{light}\"\n{pane}{medium}\n"));
+        PreparedScene::new(&scene).expect("it has one");
+    }
+}
+
+#[test]
 fn lines_are_each_traced() {
     let lines = "{ lines = [{ wavelength_nm = 436, power = 2 }, { wavelength_nm = 546.1 }, { wavelength_nm = 578 }] }";
     let scene = scene(&format!("{PRISM}[light]\nspectrum = {lines}\n"));
     let lamp = Lamp::Lines(vec![[436.0, 2.0], [546.1, 1.0], [578.0, 1.0]]);
-    let found = colors(&PreparedScene::new(&scene).expect("sound"));
-    let [_, largest] = differences(&found, &brute_force(&scene, &lamp));
-    assert!(largest < 2e-3, "{largest:e}");
+    is_the_sum(&scene, &lamp, [2e-3; 2]);
 }
 
 #[test]
