@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the pictures of docs/devices and docs/real, each device as it looks (JPEG) and rays through it (PNG), the table of all devices,
-# frames of the shop window, and films and a picture of light in flight.
-# Needs cloakroom on the path and Python with Pillow.
+# frames of the shop window, films and a picture of light in flight, and rooms.
+# Needs cloakroom on the path, and Python with Pillow and the package with Mitsuba.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=docs/devices
@@ -75,6 +75,19 @@ for pair in ii:4c iii:6c; do
 done
 cloakroom diagram scenes/paper/fig2c.toml --size 640x480 --pulse 0.9 --z 6 --rays 40 --min-power 0.03 -o "$work/flight-side.png"
 
+# Rooms, by the package cloakroom.mitsuba.
+mkdir "$work/rooms"
+# room NAME ROOM [options]
+room() {
+  local name=$1 scene=scenes/rooms/$2.xml
+  shift 2
+  python3 -m cloakroom.mitsuba "$scene" --size 400x300 --samples 256 --quiet "$@" -o "$work/rooms/$name.exr"
+}
+room 1 bar
+room 2 bar --device cylinder-cloak:inner=3,outer=7,show=bare --length 60
+room 3 study --device square-cloak --rotation 10
+room 4 shop-window
+
 # A photograph is far smaller as JPEG.
 python3 - "$work" "$out" docs/real <<'PYTHON'
 import pathlib, sys
@@ -102,5 +115,9 @@ window = Image.new("RGB", (4 * 326 - 6, 2 * 246 - 6), "white")
 for number, frame in enumerate(frames):
     window.paste(frame, (326 * (number % 4), 246 * (number // 4)))
 window.quantize(256).save("docs/shop-window.png", optimize=True)
+rooms = Image.new("RGB", (800, 600))
+for number in range(4):
+    rooms.paste(Image.open(work / "rooms" / f"{number + 1}.png"), (400 * (number % 2), 300 * (number // 2)))
+rooms.save("docs/rooms.jpg", quality=84, optimize=True, progressive=True)
 Image.open(work / "flight-side.png").convert("RGB").quantize(128).save("docs/flight-side.png", optimize=True)
 PYTHON

@@ -520,3 +520,244 @@ def test_noise_is_taken_away_by_open_image_denoise() -> None:
     # The lamp apart, which is far brighter than all else.
     dim = clean.max(axis=-1) < 2
     assert np.square(found - clean)[dim].mean() < 0.3 * np.square(noisy - clean)[dim].mean()
+
+
+FLOOR = [
+    ("two balls in one box", {"scene": "balls.toml"}, [([-6, 0, -6], 1.0), ([6, 0, 6], 1.0)]),
+    ("a ball", {"kind": "body", "shape": "sphere", "radius": 5, "index": 1.5}, [([0, 0, 0], 5.0)]),
+]
+
+
+@pytest.mark.parametrize(("name", "device", "balls"), FLOOR, ids=[name for name, *_ in FLOOR])
+@pytest.mark.parametrize("lamp", ["area", "point", "directional"])
+@pytest.mark.parametrize("see_through", ["auto", "yes", "no"])
+def test_glass_over_a_floor_is_as_bright_as_mitsubas(
+    lamp: str, see_through: str, name: str, device: dict[str, Any], balls: list[Any], tmp_path: Path
+) -> None:
+    """The light of a floor below glass that fills its box or does not; only where no shadow ray goes through is that of points lost."""
+    up = mi.ScalarTransform4f()
+    lamps: dict[str, Any] = {
+        "area": {"type": "rectangle", "to_world": up.translate([0, 60, 0]).rotate([1, 0, 0], 90).scale(30), "emitter": {"type": "area"}},
+        "point": {"type": "point", "position": [0, 40, 0], "intensity": 1e3},
+        "directional": {"type": "directional", "direction": [0.1, -1, 0]},
+    }
+    bodies = "".join(
+        f'[[device]]\nkind = "body"\nshape = "sphere"\nradius = {radius}\nindex = 1.5\nposition = {at}\n' for at, radius in balls
+    )
+    (tmp_path / "balls.toml").write_text(bodies)
+    if "scene" in device:
+        device = {"scene": str(tmp_path / "balls.toml")}
+
+    def light(integrator: str, **glass: Any) -> float:
+        room = {
+            "type": "scene",
+            "integrator": {"type": integrator, "max_depth": 12},
+            "floor": {"type": "rectangle", "to_world": up.rotate([1, 0, 0], -90).scale(30)},
+            "lamp": lamps[lamp],
+            "sensor": camera([-60, 18, 0], 40, 24, 24) | {"sampler": {"type": "independent"}},
+            **glass,
+        }
+        room["sensor"]["film"]["pixel_format"] = "rgb"
+        return float(picture(room, 256).mean())
+
+    own = light("cloakroom_path", glass=rooms.device(device, up.translate([0, 12, 0]), see_through=see_through))
+    theirs = {
+        f"ball{i}": {"type": "sphere", "center": [x, y + 12, z], "radius": radius, "bsdf": {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}}
+        for i, ([x, y, z], radius) in enumerate(balls)
+    }
+    wanted = light("path", **theirs)
+    off = own / wanted - 1
+    if see_through == "no" and lamp != "area" and len(balls) > 1:
+        assert off < -0.01
+    else:
+        # Three times what pictures of other seeds differ by.
+        assert abs(off) < 4e-3, f"{own} instead of {wanted}"
+
+
+def test_shadow_rays_go_through_devices_far_from_the_origin() -> None:
+    """The whole room is moved by ten times its size: single precision leaves that much less."""
+
+    def moved(room: dict[str, Any], by: float) -> dict[str, Any]:
+        for part in room.values():
+            if isinstance(part, dict) and "to_world" in part:
+                part["to_world"] = mi.ScalarTransform4f().translate([by, 0, 0]) @ part["to_world"]
+        return room
+
+    place = mi.ScalarTransform4f().translate([10 + THERE[0], *THERE[1:]])
+    cloaked = moved(box(pixels=24), 10) | {"cloak": rooms.device(SPHERE_CLOAK, place, unit=32)}
+    one, other = picture(cloaked, 64), picture(moved(box(pixels=24), 10), 64)
+    assert (np.abs(one - other).max(axis=-1) < 1e-3).mean() > 0.98
+    assert abs(one.mean() / other.mean() - 1) < 5e-3
+
+
+@pytest.mark.parametrize("sampler", ["stratified", "orthogonal", "multijitter", "ldsampler"])
+def test_samplers_may_take_more_samples_than_they_are_asked_for(sampler: str) -> None:
+    def seen(integrator: str) -> Image:
+        room = box(integrator, pixels=20)
+        room["sensor"]["sampler"] = {"type": sampler}
+        return picture(room, 10)
+
+    assert np.abs(seen("cloakroom_path") - seen("path")).max() < 2e-6
+
+
+@pytest.mark.parametrize("keys", [{"hide_emitters": True}, {"max_depth": 0}, {"max_depth": 1}], ids=str)
+def test_what_is_not_to_be_seen_is_not_seen(keys: dict[str, Any]) -> None:
+    def seen(integrator: str) -> Image:
+        room = box(integrator)
+        # From below, for the lamp to be in the middle.
+        room["sensor"]["to_world"] = mi.ScalarTransform4f().look_at([0, -0.6, 0], [0.01, 1, 0], [0, 0, 1])
+        room["integrator"].update(keys)
+        return picture(room)
+
+    one, other = seen("cloakroom_path"), seen("path")
+    assert np.abs(one - other).max() < 2e-6 * max(1.0, float(other.max()))
+
+
+def test_an_integrator_sees_the_devices_of_each_scene() -> None:
+    """Scenes come and go, and another may lie where one has been."""
+    integrator = mi.load_dict({"type": "cloakroom_path", "max_depth": 6})
+    for kind in ("mirror", "air", "mirror", "none", "air"):
+        room = box()
+        if kind != "none":
+            air = NOTHING if kind == "air" else {"kind": "square-cloak", "length": 16, "side": 13, "rotation": 40}
+            room = with_device(air)
+        scene = mi.load_dict(room)
+        one = np.array(integrator.render(scene, seed=1, spp=2))
+        del scene
+        assert np.array_equal(one, picture(room, 2)), kind
+
+
+def test_devices_that_nobody_would_see_are_refused() -> None:
+    made = rooms.device(SPHERE_CLOAK, mi.ScalarTransform4f().translate(THERE), unit=32)
+    masked = {**made, "bsdf": {"type": "mask", "opacity": 0.5, "nested": made["bsdf"]}}
+    group = {"type": "shapegroup", "of": made}
+    for parts in ({"cloak": masked}, {"group": group, "one": {"type": "instance", "of": {"type": "ref", "id": "group"}}}):
+        with pytest.raises(ValueError, match="put its bounding shape into the scene itself"):
+            picture(box(**parts))
+    lamp = {"type": "point", "position": THERE, "intensity": {"type": "rgb", "value": 1.0}}
+    with pytest.raises(ValueError, match="a lamp stands in the bounding shape 'cloak'"):
+        picture(box(cloak=made, lamp=lamp))
+    scene = mi.load_dict(box(cloak=made))
+    mi.render(scene, spp=1)
+    parameters = mi.traverse(scene)
+    parameters["cloak.to_world"] = mi.Transform4f().translate([0, 0.3, 0]) @ parameters["cloak.to_world"]
+    parameters.update()
+    with pytest.raises(ValueError, match="'cloak' does not hold its device"):
+        scene.integrator().render(scene, spp=1)
+
+
+def test_thin_devices_have_a_place() -> None:
+    """A mirror that has no thickness, and one of Mitsuba's."""
+    place = mi.ScalarTransform4f().translate([0.2, 0.6, 0.3]).rotate([0, 1, 0], 60)
+    own = picture(box(mirror=rooms.device({"kind": "mirror"}, place, unit=32)), 64)
+    half = 10 / 32
+    square = place @ mi.ScalarTransform4f().rotate([0, 1, 0], 90) @ mi.ScalarTransform4f().scale([half, half, 1])
+    theirs = {"type": "rectangle", "to_world": square, "bsdf": {"type": "twosided", "of": {"type": "conductor", "material": "none"}}}
+    # Crossings of devices do not count as steps of a path, which ends some paths later, and draw other numbers.
+    other = picture(box(mirror=theirs), 64)
+    assert abs(own.mean() / other.mean() - 1) < 1e-2
+    assert np.abs(own - other).mean() < 0.03 * other.mean()
+    assert np.abs(picture(box(), 64) - other).mean() > 0.06 * other.mean()
+
+
+def test_which_devices_need_a_length() -> None:
+    from cloakroom.mitsuba._room import device_of, is_endless
+
+    for kind in ("square-cloak", "double-gaussian-cloak", "cylinder-cloak", "mirror-detour", "gaussian-carpet"):
+        assert is_endless(device_of(kind)), kind
+    for text in ("sphere-cloak", "lens", "mirror", "polyhedron", "graded-box", "fisheye-hemisphere", "square-cloak:length=9", "sphere-clock"):
+        assert not is_endless(device_of(text)), text
+
+
+@pytest.mark.parametrize("turned", [0, 10, 30])
+@pytest.mark.parametrize("keys", [{}, {"axis": [0, 1, 0]}, {"rotation": 20}], ids=str)
+def test_the_outline_of_a_device_says_how_it_is_turned(keys: dict[str, Any], turned: float, tmp_path: Path) -> None:
+    """The square cloak's stands on an edge; turned in Blender, it is written in the world's frame."""
+    from cloakroom.mitsuba._room import Room
+
+    device = {"kind": "square-cloak", "length": 40, **keys}
+    exported = {key: value for key, value in device.items() if key != "rotation"}
+    (outline, *_) = cloakroom.Scatterer(cloakroom.Scene(devices=exported), unit=100).outlines()
+    turn = np.array(mi.ScalarTransform4f().rotate([0, 0, 1], turned).matrix, np.float64).reshape(4, 4)[:3, :3]
+    corners = (outline.triangles.reshape(-1, 3) @ turn.T + [1, 2, 3]).astype(np.float32)
+    mesh = mi.Mesh("outline", len(corners), len(corners) // 3)
+    parameters = mi.traverse(mesh)
+    parameters["vertex_positions"], parameters["faces"] = corners.ravel(), np.arange(len(corners), dtype=np.uint32)
+    parameters.update()
+    mesh.write_ply(str(tmp_path / "outline.ply"))
+    shape = '<shape type="ply" id="outline"><string name="filename" value="outline.ply"/></shape>'
+    (tmp_path / "room.xml").write_text(f'<scene version="3.0.0"><sensor type="perspective"/>{shape}</scene>')
+    room = Room(tmp_path / "room.xml")
+    room.replace("outline", device)
+    placed = np.array(room.root.find("shape/bsdf/transform/matrix").get("value").split(), float).reshape(4, 4)
+    np.testing.assert_allclose(placed[:3, :3], turn, atol=1e-5)
+    np.testing.assert_allclose(placed[:3, 3], [1, 2, 3], atol=1e-5)
+
+
+def test_rooms_keep_what_they_say(tmp_path: Path) -> None:
+    """Parameters, other files, units, and what the device in the room sees through."""
+    from cloakroom.mitsuba._room import Room
+
+    (tmp_path / "shapes.xml").write_text(
+        '<scene version="3.0.0"><shape type="cube" id="marker"><transform name="to_world"><scale value="$half"/>'
+        '<rotate y="1" angle="$turn"/></transform></shape></scene>'
+    )
+    (tmp_path / "room.xml").write_text(
+        '<scene version="3.0.0"><default name="depth" value="3"/><default name="half" value="20"/><default name="turn" value="30"/>'
+        '<integrator type="path"><integer name="max_depth" value="$depth"/><integer name="max_crossings" value="7"/></integrator>'
+        '<sensor type="perspective"/><emitter type="constant"/><include filename="shapes.xml"/><shape type="sphere" id="place">'
+        '<bsdf type="cloakroom"><string name="kind" value="sphere-cloak"/><string name="see_through" value="yes"/></bsdf></shape></scene>'
+    )
+    room = Room(tmp_path / "room.xml")
+    assert room.shapes == ["marker", "place"]
+    room.replace("place", SPHERE_CLOAK)
+    room.replace("marker", {"kind": "square-cloak", "length": 16, "side": 13}, see_through="no")
+    assert [each.get("value") for each in room.root.findall("shape/bsdf/string[@name='see_through']")] == ["no", "yes"]
+    assert [each.get("value") for each in room.root.findall("shape/bsdf/float[@name='unit']")] == ["1.0", "1.0"]
+    placed = np.array(room.root.find("shape/bsdf/transform/matrix").get("value").split(), float).reshape(4, 4)
+    turn = np.array(mi.ScalarTransform4f().rotate([0, 1, 0], 30).matrix, np.float64).reshape(4, 4)
+    np.testing.assert_allclose(placed, turn, atol=1e-6)
+    room.root.remove(room.root.find("shape[@id='place']"))
+    scene = room.load(size=(8, 6), samples=9)
+    integrator = scene.integrator()
+    assert (integrator.max_depth, integrator.max_crossings, integrator.see_through) == (3, 7, True)
+    assert scene.sensors()[0].sampler().sample_count() == 9
+    (tmp_path / "blind.xml").write_text('<scene version="3.0.0"/>')
+    with pytest.raises(ValueError, match="no <sensor>"):
+        Room(tmp_path / "blind.xml")
+    with pytest.raises(ValueError, match="in a group that is instanced"):
+        (tmp_path / "group.xml").write_text(
+            '<scene version="3.0.0"><sensor type="perspective"/><shape type="shapegroup" id="all"><shape type="cube" id="one"/></shape></scene>'
+        )
+        Room(tmp_path / "group.xml").replace("one", SPHERE_CLOAK)
+
+
+def test_a_picture_without_colors_is_grey(tmp_path: Path) -> None:
+    out = tmp_path / "room.exr"
+    words = ["scenes/rooms/bar.xml", "-q", "--size", "24x18", "--samples", 2, "--variant", "llvm_ad_mono", "-o", out]
+    done = command(*words, "--device", "sphere-cloak")
+    assert done.returncode == 0, done.stderr
+    image = np.array(mi.Bitmap(str(out)))
+    assert image.shape == (18, 24, 3) and image.std() > 0 and out.with_suffix(".png").exists()
+    for wrong, message in (
+        (["--empty"], "not allowed with argument"),
+        (["--size", "0x3"], "has no pixels"),
+        (["--seed", "-1"], "--seed"),
+        (["--exposure", "nan"], "no number of stops"),
+    ):
+        done = command(*words, "--device", "sphere-cloak", *wrong)
+        assert done.returncode == 2 and message in done.stderr, done.stderr
+
+
+@pytest.mark.parametrize("kind", ["sphere-cloak", "double-gaussian-cloak"])
+def test_a_second_pass_compiles_nothing(kind: str) -> None:
+    device = {"kind": kind} if kind == "sphere-cloak" else {"kind": kind, "length": 10, "width": 12, "height": 14, "w": 2.5, "h": 1}
+    room = mi.load_dict(with_device(device))
+    room.integrator().render(room, seed=1, spp=16)
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+        for seed in (1, 2, 3, 4):
+            dr.kernel_history_clear()
+            room.integrator().render(room, seed=seed, spp=16)
+            kernels = [kernel for kernel in dr.kernel_history() if kernel["type"] == dr.KernelType.JIT]
+            assert len(kernels) > 20
+            assert not [kernel for kernel in kernels if not kernel["cache_hit"] or kernel["cache_disk"]], seed

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import re
 import sys
 from pathlib import Path
@@ -19,15 +20,26 @@ def arguments() -> argparse.ArgumentParser:
     )
     parser.add_argument("room", type=Path, help="the scene, such as scenes/rooms/study.xml")
     parser.add_argument("-o", "--output", type=Path, help="the picture, .exr; the PNG has the same name")
-    parser.add_argument("--device", metavar="DEVICE", help="what stands at the room's place for a device")
+    place = parser.add_mutually_exclusive_group()
+    place.add_argument("--device", metavar="DEVICE", help="what stands at the room's place for a device")
     parser.add_argument("--rotation", type=float, metavar="DEGREES", help="how it is turned about its own axis")
     parser.add_argument("--length", type=float, metavar="CM", help="its length along its axis (40 where it needs one)")
-    parser.add_argument("--empty", action="store_true", help="the room without that device")
+    place.add_argument("--empty", action="store_true", help="the room without that device")
     parser.add_argument(
         "--replace", action="append", default=[], metavar="SHAPE=DEVICE", help="a device in the place of a shape; again for more"
     )
-    parser.add_argument("--unit", type=float, metavar="CM", help="how many cm the room's unit of length is (100, a metre)")
-    parser.add_argument("--block-shadows", action="store_true", help="no shadow rays through devices: quicker, and noisier")
+    parser.add_argument(
+        "--unit", type=float, metavar="CM", help="how many cm the room's unit of length is (as of its devices, else 100, a metre)"
+    )
+    shadows = parser.add_mutually_exclusive_group()
+    shadows.add_argument(
+        "--see-through", choices=["auto", "yes", "no"], help="whether shadow rays go through these devices (as the room has it, else auto)"
+    )
+    shadows.add_argument(
+        "--block-shadows",
+        action="store_true",
+        help="no shadow rays through any device: quicker, noisier, and behind devices dark in the light of points and the sun",
+    )
     parser.add_argument("--size", metavar="WxH", help="the size of the picture in pixels")
     parser.add_argument("--samples", type=int, metavar="N", help="samples per pixel")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="the seed (0); the same one gives the same bytes")
@@ -49,8 +61,14 @@ def main(words: list[str] | None = None) -> int:
         if not found:
             parser.error(f"--size: {given.size} is no size such as 640x480")
         size = (int(found[1]), int(found[2]))
+    if size is not None and not all(size):
+        parser.error(f"--size: {given.size} has no pixels")
     if given.samples is not None and given.samples < 1:
         parser.error("--samples: there must be one at least")
+    if not 0 <= given.seed < 2**32:
+        parser.error("--seed: expected a whole number from 0, below 2^32")
+    if given.exposure is not None and not math.isfinite(given.exposure):
+        parser.error(f"--exposure: {given.exposure} is no number of stops")
     try:
         return _render(given, size)
     except KeyboardInterrupt:
@@ -72,7 +90,7 @@ def _render(given: argparse.Namespace, size: tuple[int, int] | None) -> int:
 
     from .._progress import told
     from ._picture import denoised, write
-    from ._room import PLACE, Room, device_of
+    from ._room import PLACE, Room, device_of, is_endless
 
     if not given.variant.startswith(("llvm_", "cuda_")) or given.variant not in mi.variants():
         known = ", ".join(name for name in mi.variants() if name.startswith(("llvm_", "cuda_")))
@@ -96,22 +114,26 @@ def _render(given: argparse.Namespace, size: tuple[int, int] | None) -> int:
         for key in ("rotation", "length"):
             if getattr(given, key) is not None:
                 device[key] = getattr(given, key)
-        if "length" not in device and _takes_length(device):
+        if "length" not in device and is_endless(device):
             device["length"] = 40.0
-        room.replace(PLACE, device, unit=given.unit, stands=True)
+        room.replace(PLACE, device, unit=given.unit, stands=True, see_through=given.see_through)
     elif given.rotation is not None or given.length is not None:
         raise ValueError("--rotation and --length are of a --device")
     for text in given.replace:
         name, equals, device_text = text.partition("=")
         if not equals:
             raise ValueError(f"--replace: {text} is no shape and device such as Cube.001=sphere-cloak")
-        room.replace(name, device_of(device_text), unit=given.unit)
+        room.replace(name, device_of(device_text), unit=given.unit, see_through=given.see_through)
     scene = room.load(size=size, samples=given.samples)
     integrator = scene.integrator()
-    integrator.see_through = not given.block_shadows
+    if given.block_shadows:
+        integrator.see_through = False
     with told(not given.quiet, "rendering") as tell:
         integrator.progress = tell
         image = np.array(integrator.render(scene, seed=given.seed))[:, :, :3]
+    if image.shape[2] == 1:
+        # Light without colors.
+        image = np.repeat(image, 3, axis=2)
     if given.denoise:
         clean = denoised(image)
         if clean is None:
@@ -120,14 +142,6 @@ def _render(given: argparse.Namespace, size: tuple[int, int] | None) -> int:
             image = clean
     write(image, given.output, given.exposure)
     return 0
-
-
-def _takes_length(device: dict[str, object]) -> bool:
-    """Whether a device is endless without a length."""
-    from ..tables import DEVICES
-
-    made = DEVICES.get(str(device.get("kind")))
-    return made is not None and "length" in made._properties and device.get("kind") != "body"
 
 
 if __name__ == "__main__":

@@ -31,6 +31,12 @@ TRIALS = 4096
 #: The ends of the wavelengths at which devices are traced by themselves; what is beyond goes with the next one.
 SHORTEST_NM, LONGEST_NM = 400.0, 700.0
 
+#: Arrays of Dr.Jit begin at multiples of so many bytes.
+ALIGNED = 64
+
+#: What a BSDF that is a device has among the parameters of a scene.
+MARK = "scatterer"
+
 #: Variants in which the plugins are registered.
 _registered: set[str] = set()
 
@@ -55,6 +61,7 @@ def _bsdf() -> Callable[[Any], Any]:
             to_world = plain.pop("to_world", None)
             matrix = np.eye(4) if to_world is None else np.array(to_world.matrix, dtype=np.float64).reshape(4, 4)
             unit = float(plain.pop("unit", 1.0))
+            of_light = "wavelength_nm" in plain
             wavelength_nm, min_power = float(plain.pop("wavelength_nm", 550.0)), float(plain.pop("min_power", MIN_POWER))
             self.see_through = plain.pop("see_through", "auto")
             if self.see_through not in ("auto", "yes", "no"):
@@ -71,7 +78,7 @@ def _bsdf() -> Callable[[Any], Any]:
             keys = keys_of(plain)
             if "scene" in keys:
                 keys["scene"] = str(mi.file_resolver().resolve(keys["scene"]))
-            self.scatterer = scatterer_of(keys, matrix, unit, wavelength_nm, min_power)
+            self.scatterer = scatterer_of(keys, matrix, unit, wavelength_nm, min_power, of_light=of_light)
             # One for each of so many equal bins of wavelengths, at its middle; or one for all.
             self.scatterers = [self.scatterer]
             if bins > 1:
@@ -104,7 +111,8 @@ def _bsdf() -> Callable[[Any], Any]:
             return mi.Spectrum(1)
 
         def traverse(self, callback: Any) -> None:
-            pass
+            # By this it is found wherever it is in a scene.
+            callback.put(MARK, self.scatterer, mi.ParamFlags.NonDifferentiable)
 
         def to_string(self) -> str:
             return f"Cloakroom[{self.scatterer}]"
@@ -119,19 +127,19 @@ class _Room:
         #: Of each device one scatterer for all light, or one for each of equal bins of wavelengths.
         self.scatterers: list[list[Scatterer]] = []
         self.clear: list[bool] = []
-        self.shapes: list[Any] = []
+        self.shapes = _bounding(scene)
         self.boxes: list[Box] = []
         numbers: dict[int, int] = {}
-        for shape in scene.shapes():
+        # Paths never hit such a lamp: what shadow rays do not bring is lost.
+        has_points = any(mi.has_flag(lamp.flags(), mi.EmitterFlags.Delta) for lamp in scene.emitters())
+        for number, shape in enumerate(self.shapes, 1):
             bsdf = shape.bsdf()
-            if not hasattr(bsdf, "scatterer"):
-                continue
-            self._check_bounds(shape, bsdf)
             self.scatterers.append(bsdf.scatterers)
-            self.shapes.append(shape)
             self.boxes.append(bsdf.box)
-            numbers[_place(shape)] = len(self.shapes)
-            self.clear.append(bsdf.see_through == "yes" or bsdf.see_through == "auto" and _is_clear(bsdf))
+            numbers[_place(shape)] = number
+            self.clear.append(bsdf.see_through == "yes" or bsdf.see_through == "auto" and (has_points or _is_clear(bsdf)))
+        self.check_bounds()
+        self._check_all_found(scene)
         if self.shapes:
             table = np.zeros(max(numbers) + 1, dtype=np.uint32)
             for place, number in numbers.items():
@@ -140,22 +148,37 @@ class _Room:
             self.clear_table = mi.Bool([False, *self.clear])
             self._check_inside(scene)
 
-    @staticmethod
-    def _check_bounds(shape: Any, bsdf: Any) -> None:
-        bounds, box = shape.bbox(), bsdf.box
-        low, high = np.array(bounds.min).ravel(), np.array(bounds.max).ravel()
-        middle, reach = box.to_world[:3, 3], box.extent
-        # It has been grown; single numbers are off by less.
-        if (middle - reach < low).any() or (middle + reach > high).any():
+    def check_bounds(self) -> None:
+        """Refuses shapes that do not hold their devices, or do no longer."""
+        for shape, box in zip(self.shapes, self.boxes):
+            bounds = shape.bbox()
+            low, high = np.array(bounds.min).ravel(), np.array(bounds.max).ravel()
+            middle, reach = box.to_world[:3, 3], box.extent
+            # It has been grown; single numbers are off by less.
+            if (middle - reach < low).any() or (middle + reach > high).any():
+                raise ValueError(
+                    f"the shape {shape.id()!r} does not hold its device: it goes from {low} to {high}, and the device from "
+                    f"{middle - reach} to {middle + reach}; cloakroom.mitsuba.device() makes a shape that does"
+                )
+
+    def _check_all_found(self, scene: Any) -> None:
+        """Refuses devices that are not on shapes of the scene themselves, where nobody would see them."""
+        marks = [name for name in mi.traverse(scene).keys() if name.split(".")[-1] == MARK]
+        if len(marks) > len({id(shape.bsdf()) for shape in self.shapes}):
+            here = {f"{shape.id()}.bsdf.{MARK}" for shape in self.shapes}
+            hidden = [name.removesuffix(f".{MARK}") for name in marks if name not in here]
             raise ValueError(
-                f"the shape {shape.id()!r} does not hold its device: it goes from {low} to {high}, and the device from "
-                f"{middle - reach} to {middle + reach}; cloakroom.mitsuba.device() makes a shape that does"
+                f"the device {' or '.join(hidden)} is within another BSDF or a group of shapes that is instanced: put its "
+                "bounding shape into the scene itself"
             )
 
     def _check_inside(self, scene: Any) -> None:
-        """Refuses what stands within the bounds of a device, by rays from side to side."""
+        """Refuses what stands within the bounds of a device: lamps that are points, and shapes, by rays from side to side."""
         rng = np.random.default_rng(0)
         for shape, box in zip(self.shapes, self.boxes):
+            for lamp in scene.emitters():
+                if mi.has_flag(lamp.flags(), mi.EmitterFlags.DeltaPosition) and box.holds(np.array(lamp.bbox().center()).ravel()):
+                    raise ValueError(f"a lamp stands in the bounding shape {shape.id()!r} of a device, where no light is traced")
             # Furniture may touch the device, and be within rounding of it.
             placed, ends = box.shape(-10 * MARGIN), []
             for _ in range(2):
@@ -182,6 +205,11 @@ class _Room:
         place = dr.reinterpret_array(mi.UInt32, shape)
         known = active & (place < dr.width(self.table))
         return dr.select(known, dr.gather(mi.UInt32, self.table, place, known), 0)
+
+
+def _bounding(scene: Any) -> list[Any]:
+    """The shapes of a scene that bound devices."""
+    return [shape for shape in scene.shapes() if hasattr(shape.bsdf(), "scatterer")]
 
 
 def _place(shape: Any) -> int:
@@ -254,7 +282,7 @@ def _mueller(scattered: dict[str, NDArray[Any]], d: Any) -> Any:
         [(after[0] + after[1]).real, (after[0] - after[1]).real, (one + other).real, (one - other).imag],
         [-(after[0] + after[1]).imag, -(after[0] - after[1]).imag, -(one + other).imag, (one - other).real],
     ]
-    scale = mi.Float(scattered["weight"]) / power
+    scale = _array(mi.Float, scattered["weight"]) / power
     return mi.Spectrum(mi.Matrix4f(rows)) * dr.select(power > 0, scale, 0)
 
 
@@ -273,7 +301,7 @@ def _first_only(light: Any, alone: Any) -> Any:
 
 def _weight(scattered: dict[str, NDArray[Any]], d: Any) -> Any:
     """What light that comes against rays along ``d`` is to be multiplied with for the leaf that was drawn."""
-    return _mueller(scattered, d) if mi.is_polarized else mi.Float(scattered["weight"])
+    return _mueller(scattered, d) if mi.is_polarized else _array(mi.Float, scattered["weight"])
 
 
 def _of_lamp(light: Any) -> Any:
@@ -300,15 +328,31 @@ def _is_clear(bsdf: Any) -> bool:
 
 
 def _rows(vectors: Any) -> NDArray[np.float32]:
-    """Vectors as rows, without a copy more than is needed."""
-    rows: NDArray[np.float32] = np.array(vectors, dtype=np.float32, copy=None).T
-    return rows
+    """Vectors as rows."""
+    dr.eval(vectors)
+    # One by one: for all in one array a kernel would be compiled that knows how many there are.
+    return np.stack([np.array(part) for part in (vectors.x, vectors.y, vectors.z)], axis=1)
+
+
+def _array(kind: Any, values: NDArray[Any]) -> Any:
+    """An array of Dr.Jit's of numbers of numpy, which begin where it likes them to: elsewhere, other kernels read them."""
+    values = np.asarray(values, bool if kind is mi.Bool else np.float32)
+    room = np.empty(values.nbytes + ALIGNED, np.uint8)
+    begin = -room.ctypes.data % ALIGNED
+    aligned = room[begin : begin + values.nbytes].view(values.dtype)
+    aligned[:] = values
+    return kind(aligned)
 
 
 def _columns(kind: Any, rows: NDArray[np.float32]) -> Any:
     """Vectors from their rows."""
-    # One by one: of all in one array they would be parts that begin at numbers of it, for which kernels are compiled.
-    return kind(*(mi.Float(np.ascontiguousarray(column)) for column in rows.T))
+    return kind(*(_array(mi.Float, column) for column in rows.T))
+
+
+def _lanes(mask: Any) -> Any:
+    """The numbers of the lanes in which something holds: a single one twice, for arrays of one number have kernels of their own."""
+    lanes = dr.compress(mask)
+    return dr.repeat(lanes, 2) if dr.width(lanes) == 1 else lanes
 
 
 def _sampler_at(sampler: Any, places: Any) -> Any:
@@ -355,7 +399,7 @@ def _integrator() -> Callable[[Any], Any]:
             self.see_through = bool(props.get("see_through", True))
             self.hide = bool(props.get("hide_emitters", False))
             self.progress: Callable[[int, int], object] | None = None
-            self._room: tuple[Any, _Room] | None = None
+            self._room: _Room | None = None
 
         def to_string(self) -> str:
             return f"CloakroomPath[max_depth = {self.max_depth}, rr_depth = {self.rr_depth}]"
@@ -364,9 +408,13 @@ def _integrator() -> Callable[[Any], Any]:
             return []
 
         def _devices(self, scene: Any) -> _Room:
-            if self._room is None or self._room[0] != scene.ptr:
-                self._room = (scene.ptr, _Room(scene))
-            return self._room[1]
+            shapes = _bounding(scene)
+            if self._room is None or len(shapes) != len(self._room.shapes) or any(
+                one is not other for one, other in zip(shapes, self._room.shapes)
+            ):
+                self._room = _Room(scene)
+            self._room.check_bounds()
+            return self._room
 
         def render(
             self,
@@ -399,12 +447,13 @@ def _integrator() -> Callable[[Any], Any]:
                     of_pass = mi.UInt32(seed if number == 0 else int(mi.sample_tea_32(int(seed), number)[0]))
                     # As a number of the program, each seed would compile kernels of its own.
                     dr.make_opaque(of_pass)
-                    sampler, _ = Common.prepare(self, sensor, of_pass, at_once, self.aov_names())
+                    # A sampler may take more, for its numbers to be those of a whole pattern.
+                    sampler, taken = Common.prepare(self, sensor, of_pass, at_once, self.aov_names())
                     ray, weight, pos = Common.sample_rays(self, scene, sensor, sampler)
                     light, valid, _ = self.sample(scene, sampler, ray, None, mi.Bool(True))
                     if block is None:
                         block = film.create_block()
-                    self._put(block, film, pos, light * weight, valid, ray.wavelengths, at_once)
+                    self._put(block, film, pos, light * weight, valid, ray.wavelengths, taken)
                     dr.eval(block.tensor())
             film.put_block(block)
             if self.progress is not None:
@@ -440,10 +489,12 @@ def _integrator() -> Callable[[Any], Any]:
             """The light along rays: a loop on the device that goes on until all paths end or come to a device."""
             room = self._devices(scene)
             width = max(dr.width(ray), sampler.wavefront_size())
+            if self.max_depth == 0:
+                return dr.zeros(mi.Spectrum, width), dr.zeros(mi.Bool, width), []
             # As with `path`: where there is a sky, no ray goes to nowhere.
             sky = not self.hide and scene.environment() is not None
             state = self._launched(ray, active, width, sky)
-            clear = self.see_through and any(getattr(room, "clear", []))
+            clear = self.see_through and any(room.clear)
             if not room.shapes:
                 state, _, _ = self._follow(scene, sampler, state, room, False)
                 return dr.select(state["valid"], state["result"], 0), state["valid"], []
@@ -460,7 +511,7 @@ def _integrator() -> Callable[[Any], Any]:
                     self._shed(scene, room, state, shadows, turn)
                 dr.scatter(result, state["result"], state["lane"])
                 dr.scatter(valid, state["valid"], state["lane"])
-                further = dr.compress((state["parked"] != 0) | state["waits"])
+                further = _lanes((state["parked"] != 0) | state["waits"])
                 if dr.width(further) == 0:
                     break
                 state = {name: dr.gather(type(value), value, further) for name, value in state.items()}
@@ -561,6 +612,11 @@ def _integrator() -> Callable[[Any], Any]:
                 now["parked"] = dr.select(meets & ~through, device, 0)
                 now["left"] = dr.select(through & (dr.dot(si.n, ray.d) > 0), 0, now["left"])
                 normal &= ~meets
+            if self.hide:
+                # Nobody sees lamps themselves, but what is behind.
+                hidden = normal & (now["depth"] == 0) & si.is_valid() & (si.emitter(scene) != None)  # noqa: E711
+                through |= hidden
+                normal &= ~hidden
             before = dr.zeros(mi.Interaction3f)
             before.p, before.time = now["from"], now["time"]
             if mi.is_spectral:
@@ -650,7 +706,7 @@ def _integrator() -> Callable[[Any], Any]:
             parked = state["parked"]
             state["active"] = mi.Bool(state["waits"])
             for number, scatterers in enumerate(room.scatterers, 1):
-                rows = dr.compress(parked == number)
+                rows = _lanes(parked == number)
                 count = dr.width(rows)
                 if count == 0:
                     continue
@@ -663,14 +719,14 @@ def _integrator() -> Callable[[Any], Any]:
                 status = scattered["status"]
                 # Where furniture touches metal, rays may start within it, by rounding: they end.
                 goes = (status == MISSED) | (status == LEFT)
-                here = mi.Bool(goes) & (crossings < self.max_crossings)
+                here = _array(mi.Bool, goes) & (crossings < self.max_crossings)
                 straight = dr.gather(mi.Bool, state["straight"], rows)
-                on_line = mi.Bool(scattered["straight"])
-                if not (self.see_through and room.clear[number - 1]):
-                    on_line &= mi.Bool(status != LEFT)
+                # Shadow rays end at the bounding shapes of other devices, whether they would meet them or not.
+                sees_through = self.see_through and room.clear[number - 1]
+                on_line = _array(mi.Bool, scattered["straight"] if sees_through else np.zeros(count, bool))
                 if disperses:
                     # Other wavelengths take other ways.
-                    met, alone = mi.Bool(status != MISSED), dr.gather(mi.Bool, state["alone"], rows)
+                    met, alone = _array(mi.Bool, status != MISSED), dr.gather(mi.Bool, state["alone"], rows)
                     throughput = dr.select(met, _first_only(throughput, alone), throughput)
                     dr.scatter(state["alone"], alone | met, rows)
                 dr.scatter(state["o"], _columns(mi.Point3f, scattered["position"]), rows)
@@ -689,7 +745,7 @@ def _integrator() -> Callable[[Any], Any]:
             width = dr.width(state["slots"])
             slot = dr.arange(mi.UInt32, width * SLOTS)
             used = (slot % SLOTS) < dr.gather(mi.UInt32, state["slots"], slot // SLOTS)
-            rows = dr.compress(used)
+            rows = _lanes(used)
             if dr.width(rows) == 0:
                 return
             ways = {name: dr.gather(type(value), value, rows) for name, value in shadows.items()}
@@ -701,7 +757,7 @@ def _integrator() -> Callable[[Any], Any]:
                 own = dr.gather(mi.UInt32, state["own"], rows // SLOTS) ^ mi.UInt32(0x85EBCA6B)
                 draws = mi.sample_tea_float32(own, count + rows % SLOTS)
                 for number, scatterers in enumerate(room.scatterers, 1):
-                    of_device = dr.compress(ways["device"] == number)
+                    of_device = _lanes(ways["device"] == number)
                     if dr.width(of_device) == 0:
                         continue
                     o = dr.gather(mi.Point3f, ways["o"], of_device)
@@ -720,7 +776,7 @@ def _integrator() -> Callable[[Any], Any]:
                     dr.scatter(ways["light"], light_there * _weight(scattered, d), of_device)
                 arrived = self._on_to_light(scene, room, ways)
                 dr.scatter(light, _of_lamp(ways["light"]), rows, arrived)
-                left = dr.compress(ways["device"] != 0)
+                left = _lanes(ways["device"] != 0)
                 if dr.width(left) == 0:
                     break
                 rows = dr.gather(mi.UInt32, rows, left)
@@ -752,8 +808,9 @@ def _integrator() -> Callable[[Any], Any]:
                 next_one = dr.select(found & ~through & clear, device, next_one)
                 beyond = si.spawn_ray(ray.d)
                 left = dr.select(through & (dr.dot(si.n, ray.d) > 0), 0, left)
+                # It starts a little beyond the shape, and the lamp is so much nearer.
+                maxt = dr.select(through, maxt - dr.dot(beyond.o - o, ray.d), maxt)
                 o = dr.select(through, beyond.o, o)
-                maxt = dr.select(through, maxt - si.t, maxt)
                 return o, maxt, left, next_one, lit, through & (maxt > 0)
 
             start = (

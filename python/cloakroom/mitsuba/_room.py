@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..scatterers import rigid
-from ._shape import MIN_POWER, box_of, device, scatterer_of
+from ._shape import MIN_POWER, Box, box_of, device, scatterer_of
 
-__all__ = ["Room", "device_of"]
+__all__ = ["Room", "device_of", "is_endless"]
 
 #: The shape of a room of ours that is there for any device.
 PLACE = "place"
@@ -27,6 +27,9 @@ GAP = 1e-3
 
 #: How far the faces of a box may be from square; meshes are written in single precision.
 SQUARE = 1e-4
+
+#: By how much, relatively, a box may differ from that of a device and be its outline.
+SIMILAR = 1e-3
 
 
 def device_of(text: str) -> dict[str, Any]:
@@ -44,6 +47,19 @@ def device_of(text: str) -> dict[str, Any]:
             raise ValueError(f"{text}: expected a kind and keys, such as square-cloak:length=40,rotation=10")
         keys[name.strip()] = value_of(value.strip())
     return keys
+
+
+def is_endless(given: dict[str, Any]) -> bool:
+    """Whether a device has no bounds as it is, and has them with a length."""
+
+    def fails(keys: dict[str, Any]) -> bool:
+        try:
+            box_of(scatterer_of(keys, np.eye(4), 1.0, 550.0, MIN_POWER))
+        except ValueError:
+            return True
+        return False
+
+    return "scene" not in given and fails(given) and not fails({**given, "length": 1.0})
 
 
 def value_of(text: str) -> Any:
@@ -71,14 +87,35 @@ class Room:
             raise ValueError(f"{self.path}: no XML: {error}") from None
         if self.root.tag != "scene":
             raise ValueError(f"{self.path}: no scene of Mitsuba, but <{self.root.tag}>")
+        self._include(self.root)
+        if self.root.find("sensor") is None:
+            raise ValueError(f"{self.path}: no <sensor>, and so no picture")
 
     @property
     def shapes(self) -> list[str]:
         """What its shapes are called, as far as they have names."""
         return [name for shape in self.root.iter("shape") for name in _names(shape)[:1]]
 
+    def _include(self, root: Any) -> None:
+        """Puts the contents of other files where they are included."""
+        for number, child in reversed(list(enumerate(root))):
+            if child.tag == "include":
+                path = self._file(child.get("filename", ""))
+                try:
+                    included = ElementTree.parse(path).getroot()
+                except ElementTree.ParseError as error:
+                    raise ValueError(f"{path}: no XML: {error}") from None
+                self._include(included)
+                root[number : number + 1] = list(included)
+
     def replace(
-        self, name: str, given: dict[str, Any], *, unit: float | None = None, stands: bool = False, see_through: str = "auto"
+        self,
+        name: str,
+        given: dict[str, Any],
+        *,
+        unit: float | None = None,
+        stands: bool = False,
+        see_through: str | None = None,
     ) -> None:
         """Puts a device in the place of a shape: its middle where that of the shape is, turned as the shape is.
 
@@ -89,18 +126,24 @@ class Room:
         given : mapping
             The kind and the keys of the device, or a ``scene``.
         unit : float, optional
-            How many cm the room's unit of length is; by default that of the device whose place is taken, else 100.
+            How many cm the room's unit of length is; by default that of the devices that are in it, else 100.
         stands : bool, default False
             Whether the device stands where the lowest point of the shape is (y is up), instead of sharing its middle.
+        see_through : str, optional
+            As of `device`; by default that of the device whose place is taken, else ``"auto"``.
         """
         shape = self._shape(name)
         own = shape.find("bsdf[@type='cloakroom']")
         if unit is None:
-            written = None if own is None else own.find("float[@name='unit']")
-            unit = 100.0 if own is None else float(1 if written is None else written.get("value", "1"))
-        middle, lowest, turn = self._place(shape, own)
+            written = [self._plain(device).find("float[@name='unit']") for device in self.root.iter("bsdf") if _is_device(device)]
+            units = {1.0 if each is None else float(each.get("value", "1")) for each in written}
+            unit = units.pop() if len(units) == 1 else 100.0
+        if see_through is None:
+            written_word = None if own is None else own.find("string[@name='see_through']")
+            see_through = "auto" if written_word is None else written_word.get("value", "auto")
         if "scene" in given:
             given = {**given, "scene": str(self._file(given["scene"]))}
+        middle, lowest, turn = self._place(self._plain(shape), own, given, unit)
         to_world = np.eye(4)
         to_world[:3, :3] = turn
         box = box_of(scatterer_of(given, to_world, unit, 550.0, MIN_POWER))
@@ -124,11 +167,11 @@ class Room:
         own = self.root.find("integrator")
         integrator = ElementTree.Element("integrator", type="cloakroom_path")
         for child in () if own is None else own:
-            if child.get("name") in ("max_depth", "rr_depth", "hide_emitters"):
+            if child.get("name") in ("max_depth", "rr_depth", "hide_emitters", "max_crossings", "see_through"):
                 integrator.append(child)
         if own is not None:
             self.root.remove(own)
-        self.root.insert(0, integrator)
+        self.root.append(integrator)
         for film in self.root.iter("film"):
             if size is not None:
                 _set(film, "width", size[0])
@@ -138,7 +181,10 @@ class Room:
                 film.remove(rfilter)
             film.append(ElementTree.Element("rfilter", type="box"))
         if samples is not None:
-            for sampler in self.root.iter("sampler"):
+            for sensor in self.root.iter("sensor"):
+                sampler = sensor.find("sampler")
+                if sampler is None:
+                    sampler = ElementTree.SubElement(sensor, "sampler", type="independent")
                 _set(sampler, "sample_count", samples)
         resolver = mi.file_resolver()
         resolver.append(str(self.path.resolve().parent))
@@ -148,12 +194,25 @@ class Room:
         asked = _clean(name)
         found = [shape for shape in self.root.iter("shape") if asked in map(_clean, _names(shape))]
         if len(found) == 1:
+            if found[0] not in list(self.root):
+                raise ValueError(f"{self.path}: the shape {name!r} is in a group that is instanced; a device takes a shape of the scene itself")
             return found[0]
         known = ", ".join(self.shapes) or "none has a name"
         raise ValueError(f"{self.path}: {'no shape' if not found else f'{len(found)} shapes'} called {name!r}; there are: {known}")
 
-    def _place(self, shape: Any, own: Any) -> tuple[NDArray[np.float64], float, NDArray[np.float64]]:
-        """The middle of a shape, its lowest point, and how it is turned."""
+    def _plain(self, element: Any) -> Any:
+        """A copy of a part of the scene with the values of its parameters."""
+        defaults = {each.get("name", ""): each.get("value", "") for each in self.root.iter("default")}
+        plain = ElementTree.fromstring(ElementTree.tostring(element))
+        for each in plain.iter():
+            for name, text in each.attrib.items():
+                each.set(name, re.sub(r"\$(\w+)", lambda found: defaults.get(found[1], found[0]), text))
+        return plain
+
+    def _place(
+        self, shape: Any, own: Any, given: dict[str, Any], unit: float
+    ) -> tuple[NDArray[np.float64], float, NDArray[np.float64]]:
+        """The middle of a shape, its lowest point, and how it is turned as the place of a device."""
         alone = ElementTree.Element("scene", version="3.0.0")
         bare = ElementTree.fromstring(ElementTree.tostring(shape))
         for child in list(bare):
@@ -174,7 +233,9 @@ class Room:
         turn, _, other = np.linalg.svd(columns)
         turn = turn @ np.diag([1, 1, np.linalg.det(turn @ other)]) @ other
         if np.array_equal(matrix, np.eye(3)) and only.is_mesh():
-            turn = _turn_of_box(only)
+            # An outline is that of the device before it is turned about its own axis.
+            unturned = {key: value for key, value in given.items() if key != "rotation"}
+            turn = _turn_of_box(only, box_of(scatterer_of(unturned, np.eye(4), unit, 550.0, MIN_POWER)))
         if own is not None:
             written = own.find("transform[@name='to_world']")
             turn = np.eye(3) if written is None else _turn_of(written)
@@ -186,23 +247,21 @@ class Room:
 
     @staticmethod
     def _write(shape: Any, given: dict[str, Any], to_world: NDArray[np.float64], unit: float, see_through: str) -> None:
-        if "scene" in given:
-            box = box_of(scatterer_of(given, to_world, unit, 550.0, MIN_POWER))
-            kind, bounding = "sphere" if box.ball else "cube", box.shape()
-            properties = {"scene": given["scene"]}
-        else:
-            made = device(given, to_world, unit=unit)
-            kind, bounding = made["type"], np.array(made["to_world"].matrix, np.float64).reshape(4, 4)
-            properties = {"kind": made["bsdf"]["kind"], "keys": made["bsdf"]["keys"]}
-        shape.set("type", kind)
+        made = device(given, to_world, unit=unit, see_through=see_through)
+        shape.set("type", made["type"])
         for child in list(shape):
             shape.remove(child)
-        shape.append(_transform(bounding))
+        shape.append(_transform(np.array(made["to_world"].matrix, np.float64).reshape(4, 4)))
         bsdf = ElementTree.SubElement(shape, "bsdf", type="cloakroom")
-        for name, text in {**properties, "see_through": see_through}.items():
-            ElementTree.SubElement(bsdf, "string", name=name, value=text)
+        for name in ("scene", "kind", "keys", "see_through"):
+            if name in made["bsdf"]:
+                ElementTree.SubElement(bsdf, "string", name=name, value=made["bsdf"][name])
         bsdf.append(_transform(to_world))
         ElementTree.SubElement(bsdf, "float", name="unit", value=repr(float(unit)))
+
+
+def _is_device(bsdf: Any) -> bool:
+    return bool(bsdf.get("type") == "cloakroom")
 
 
 def _names(shape: Any) -> list[str]:
@@ -242,9 +301,10 @@ def _turn_of(transform: Any) -> NDArray[np.float64]:
     return rigid("to_world", _composed(transform))[:3, :3]
 
 
-def _turn_of_box(mesh: Any) -> NDArray[np.float64]:
+def _turn_of_box(mesh: Any, own: Box) -> NDArray[np.float64]:
     """How a box is turned whose corners are written in the frame of the world: of the turns that its faces allow the
-    least one, below 45 degrees about each axis. Of other meshes none."""
+    least one, below 45 degrees about each axis. If it is as wide and as high as the device's own box, it is turned from
+    where that one is. Of other meshes none."""
     corners = np.array(mesh.vertex_positions_buffer(), np.float64).reshape(-1, 3)
     faces = corners[np.array(mesh.faces_buffer()).reshape(-1, 3)]
     normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
@@ -256,13 +316,21 @@ def _turn_of_box(mesh: Any) -> NDArray[np.float64]:
             axes.append(normal)
     if len(axes) != 3 or any(abs(axes[one] @ axes[other]) > SQUARE for one, other in ((0, 1), (0, 2), (1, 2))):
         return np.eye(3)
-    # Each axis of the world goes to that of the box which is next to it.
-    orders = list(itertools.permutations(range(3)))
-    near = max(orders, key=lambda order: sum(abs(axes[order[at]][at]) for at in range(3)))
-    columns = np.column_stack([axes[near[at]] * np.sign(axes[near[at]][at] or 1) for at in range(3)])
-    turn, _, other = np.linalg.svd(columns)
-    found: NDArray[np.float64] = turn @ np.diag([1, 1, np.linalg.det(turn @ other)]) @ other
-    return found
+    found, halves = np.column_stack(axes), np.array([np.ptp(corners @ axis) / 2 for axis in axes])
+    orders = [list(order) for order in itertools.permutations(range(3))]
+    outlines = [order for order in orders if np.allclose(halves[order][:2], own.halves[:2], rtol=SIMILAR)]
+    frame = own.to_world[:3, :3] if outlines and not own.ball else np.eye(3)
+    # Of all rotations from one frame to the other that next to none.
+    turns = []
+    for order in outlines if outlines and not own.ball else orders:
+        for signs in itertools.product((1, -1), repeat=3):
+            turn = found[:, order] * signs @ frame.T
+            if np.linalg.det(turn) > 0:
+                turns.append(turn)
+    near = max(turns, key=np.trace)
+    turn, _, other = np.linalg.svd(near)
+    rotation: NDArray[np.float64] = turn @ other
+    return rotation
 
 
 def _composed(steps: Iterable[Any]) -> NDArray[np.float64]:

@@ -28,7 +28,7 @@ def device(
     to_world: Any = None,
     *,
     unit: float = 1.0,
-    wavelength_nm: float = 550.0,
+    wavelength_nm: float | None = None,
     wavelengths: int = 1,
     see_through: str = "auto",
     min_power: float = MIN_POWER,
@@ -38,19 +38,19 @@ def device(
     Parameters
     ----------
     given : device or mapping
-        A device, ``SquareCloak(length=40)``, or its kind and keys.
+        A device, ``SquareCloak(length=40)``, its kind and keys, or ``{"scene": name}`` of a scene file.
     to_world : transform or array_like, (4, 4), optional
         Where it stands: a rotation and a shift. The device's own frame is x forward, y up, z right.
     unit : float, default 1
         How many cm the scene's unit of length is: 100 for a scene in metres.
-    wavelength_nm : float, default 550
-        The wavelength in vacuum at which the device is traced, for all colors.
+    wavelength_nm : float, optional
+        The wavelength in vacuum at which the device is traced, for all colors: by default 550, or that of the scene file.
     wavelengths : int, default 1
         In spectral variants, at how many wavelengths it is traced instead: at the middles of so many equal bins from 400
         to 700 nm, so that its materials show their colors. A path that meets it goes on with one of its wavelengths.
     see_through : {"auto", "yes", "no"}, default "auto"
         Whether shadow rays go through the device, on as far as its leaves go on along their line. ``"auto"`` lets them
-        where nearly all leaves do.
+        where nearly all leaves do, or where a lamp is a point or the sun, whose light no other ray finds.
     min_power : float, default 1e-3
         Branches within the device below this share of a ray's power are pruned.
 
@@ -68,17 +68,20 @@ def device(
 
     matrix = rigid("to_world", np.eye(4) if to_world is None else _matrix(to_world))
     listed = {"kind": given.kind, **given.given()} if isinstance(given, Device) else dict(given)
-    scatterer = scatterer_of(listed, matrix, unit, wavelength_nm, min_power)
+    of_light = wavelength_nm is not None
+    nm = 550.0 if wavelength_nm is None else float(wavelength_nm)
+    scatterer = scatterer_of(listed, matrix, unit, nm, min_power, of_light=of_light)
+    words = {"scene": str(listed.pop("scene"))} if "scene" in listed else {"kind": listed.pop("kind"), "keys": _json(listed)}
     bsdf = {
         "type": "cloakroom",
-        "kind": listed.pop("kind"),
-        "keys": json.dumps(listed),
+        **words,
         "to_world": mi.ScalarTransform4f(matrix),
         "unit": float(unit),
-        "wavelength_nm": float(wavelength_nm),
         "see_through": see_through,
         "min_power": float(min_power),
     }
+    if of_light:
+        bsdf["wavelength_nm"] = nm
     if wavelengths != 1:
         bsdf["wavelengths"] = int(wavelengths)
     box = box_of(scatterer)
@@ -132,8 +135,14 @@ class Box:
     def shape(self, grown: float = MARGIN) -> NDArray[np.float64]:
         """The matrix that makes Mitsuba's cube or sphere of it, grown by a share of its size."""
         matrix = self.to_world.copy()
-        matrix[:3, :3] *= self.halves + grown * self.halves.max()
+        # What is thin has no more to lose than it has.
+        matrix[:3, :3] *= np.maximum(self.halves + grown * self.halves.max(), 0)
         return matrix
+
+    def holds(self, point: NDArray[np.float64]) -> bool:
+        """Whether a point of the world, (3,), is in it."""
+        local = np.abs(self.to_world[:3, :3].T @ (point - self.to_world[:3, 3]))
+        return bool(np.linalg.norm(local) < self.halves[0] if self.ball else (local < self.halves).all())
 
 
 def box_of(scatterer: Scatterer) -> Box:
@@ -175,6 +184,17 @@ def _turned(
         if np.prod(2 * half[:2]) < area:
             area, best = np.prod(2 * half[:2]), (to_world @ turn, middle - half, middle + half)
     return best
+
+
+def _json(keys: Mapping[str, Any]) -> str:
+    """Keys as JSON; numbers and arrays may be those of numpy."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, (np.ndarray, np.generic)) and not np.iscomplexobj(value):
+            return value.tolist()
+        raise ValueError(f"{value!r} cannot stand among the keys of a device")
+
+    return json.dumps(keys, default=plain)
 
 
 def _matrix(given: Any) -> ArrayLike:
