@@ -479,3 +479,73 @@ test("a class on one network opens the link, and nobody without it", { skip: !ne
   await page.close();
   await shared.end();
 });
+
+test("a cloak that is hollow is no metal, and what is in it stays when it is taken away", async () => {
+  const { page, complaints } = await open("#open-core");
+  await small(page, "1");
+  const shows = () => page.locator("#shows input").evaluateAll((all) => all.map(({ value }) => value));
+  assert.deepEqual(await shows(), ["cloak", "empty"]);
+  assert.match(await says(page), /A cloak that is hollow and 1 more stand in front of the person\. Its core is open/);
+  await page.keyboard.press("b");
+  await page.locator("#shows input[value=empty]").check({ force: true });
+  await finished(page);
+  assert.match(await says(page), /^A ball 8 cm across stands in front/);
+  await page.locator("#shows input[value=cloak]").check({ force: true });
+  await finished(page);
+  assert.match(await says(page), /hollow/);
+  assert.ok(!(await page.locator("#banner").isVisible()));
+  // What is led around follows the axis of the cloak, and a polarizer half a turn on is the same.
+  await page.goto(`${server.address}#square-cloak-negative-uniaxial&polarizer=180`);
+  await finished(page);
+  assert.match(await says(page), /horizontal polarizer lets only that polarization pass that is led around/);
+  await page.goto(`${server.address}#sphere-cloak&show=mirror`);
+  await finished(page);
+  assert.match(await says(page), /a point or a thread, and so nothing/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("an embedded view of one wavelength has its slider, and a tour begins without light in flight", async () => {
+  const embedded = await open("#bodies&embed=wavelength");
+  const fields = await embedded.page.locator("input:visible, select:visible").evaluateAll((all) => all.map(({ id }) => id));
+  assert.deepEqual(fields, ["wavelength"]);
+  assert.match(await says(embedded.page), /of 550 nm/);
+  assert.deepEqual(embedded.complaints, []);
+  await embedded.page.close();
+  const { page, complaints } = await open("#square-cloak&moment=0.5");
+  await small(page, "1");
+  await page.click("#tour");
+  await finished(page);
+  assert.ok(!(await page.isChecked("#flight")));
+  assert.ok(!(await says(page)).includes("flashes"));
+  // The menu leads out of the page of all devices, whose keys turn nothing.
+  await page.goto(`${server.address}#gallery`);
+  await page.keyboard.press("b");
+  await page.selectOption("#exhibit", "luneburg-lens");
+  await finished(page);
+  assert.ok(await page.locator("main").isVisible());
+  assert.match(await says(page), /Luneburg|gathers parallel light/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("the outermost corner goes where the pointer goes", async () => {
+  const { page, complaints } = await open("#prisms");
+  await small(page, "1");
+  const boxes = await page.locator(".corner").evaluateAll((all) => all.map((one) => one.getBoundingClientRect().top));
+  const highest = page.locator(".corner").nth(boxes.indexOf(Math.min(...boxes)));
+  const { x, y, width, height } = await highest.boundingBox();
+  const at = [x + width / 2, y + height / 2];
+  await page.mouse.move(...at);
+  await page.mouse.down();
+  for (let step = 1; step <= 8; step += 1) {
+    await page.mouse.move(at[0], at[1] - 3 * step);
+    await page.waitForTimeout(40);
+    const now = await highest.boundingBox();
+    assert.ok(Math.abs(now.y + now.height / 2 - (at[1] - 3 * step)) < 2);
+  }
+  await page.mouse.up();
+  await finished(page);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});

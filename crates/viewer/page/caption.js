@@ -6,12 +6,15 @@ const CARPETS = ["gaussian-carpet", "quasi-conformal-carpet", "grating-carpet"];
 const BALLS = ["bending-sphere", "eaton-lens", "luneburg-lens", "fisheye-lens", "fisheye-hemisphere"];
 // Those whose cloak is seen as a flat mirror, edge-on or turned.
 const SHEETS = ["square-cloak", "double-gaussian-cloak"];
+// Those whose cloak is seen as a point or a thread.
+const ROUND = ["sphere-cloak", "cylinder-cloak"];
 
 // What a key of a device says, or else its default.
 const valueOf = (device, hello, name) => device[name] ?? hello.kinds[device.kind]?.keys[name]?.default;
 
 // The thing itself, with its size.
 function thing(device, hello) {
+  if (device.core === "open") return say("thing.open");
   const of = (name) => Number(valueOf(device, hello, name));
   const { kind } = device;
   const [word, size] = {
@@ -47,12 +50,18 @@ export function aside(device, camera = {}) {
   return degrees < 0.05 ? 0 : degrees;
 }
 
-// What the polarizer of the camera does to a cloak that works for one polarization.
-function polarized(wanted, polarizer = "none") {
-  const other = wanted === "horizontal" ? "vertical" : "horizontal";
-  const p = (word) => ({ p: say(`polarizer.${word}`) });
-  if (polarizer === wanted || (wanted === "horizontal" ? polarizer === 0 : polarizer === 90)) return ["cloak.through", p(wanted)];
-  if (polarizer === other) return ["cloak.wrong", p(other)];
+// What the polarizer of the camera does to a cloak that works for one polarization, along its axis or across; nothing is said where that
+// is slanted.
+function polarized(isAlong, device, polarizer = "none") {
+  const [x, y, z] = (device.axis ?? [0, 0, 1]).map((part) => Math.abs(part) > 1e-9);
+  if (x || y === z) return "";
+  const words = ["horizontal", "vertical"];
+  const angle = words.includes(polarizer) ? 90 * words.indexOf(polarizer) : polarizer;
+  const wanted = Number(isAlong === y);
+  const p = (number) => ({ p: say(`polarizer.${words[number]}`) });
+  const turned = Math.abs(angle) % 180;
+  if (turned === 90 * wanted) return ["cloak.through", p(wanted)];
+  if (turned === 90 - 90 * wanted) return ["cloak.wrong", p(1 - wanted)];
   return ["cloak.half", p(wanted)];
 }
 
@@ -62,17 +71,18 @@ function reasons(device, scene, hello) {
   const { camera = {} } = scene;
   const material = valueOf(device, hello, "material");
   const said = [];
+  if (device.core === "open") return ["cloak.open"];
   if (SHEETS.includes(kind)) {
     const degrees = aside(device, camera);
     const isTurned = Math.abs(degrees - Math.abs(device.rotation ?? 0)) < 0.06;
     const isHalf = kind === "square-cloak" && material !== "impedance-matched";
     const straight = kind === "square-cloak" ? "cloak.straight" : "cloak.almost";
-    const [half, put] = isHalf ? polarized("horizontal", camera.polarizer) : [];
+    const [half, put] = isHalf ? polarized(true, device, camera.polarizer) : [];
     if (half !== "cloak.wrong") said.push(degrees === 0 ? (isHalf ? "" : straight) : [isTurned ? "cloak.turned" : "cloak.aside", { r: number(degrees) }]);
     if (half) said.push([half, put]);
   } else if (kind === "cylinder-cloak" && material !== "impedance-matched") {
-    said.push(polarized("vertical", camera.polarizer));
-  } else if (kind === "cylinder-cloak" || kind === "sphere-cloak") {
+    said.push(polarized(false, device, camera.polarizer));
+  } else if (ROUND.includes(kind)) {
     said.push("cloak.round");
   } else if (CARPETS.includes(kind) || (kind === "prisms" && device.floor > 0)) {
     said.push("cloak.carpet");
@@ -84,7 +94,6 @@ function reasons(device, scene, hello) {
     const word = kind === "invisible-sphere" && material !== "graded" ? "see.invisible-sphere-regularized" : `see.${kind}`;
     if (has(word)) said.push([word, { a: number(Number(valueOf(device, hello, "angle") ?? 0)) }]);
   }
-  if (device.core === "open") said.push("cloak.open");
   return said;
 }
 
@@ -95,29 +104,33 @@ export const isOwn = (image) => typeof image === "string" && !image.startsWith("
 
 // The caption of a state, with the marks of the glossary.
 export function caption(state, hello) {
-  const { scene, device } = state;
+  const { scene } = state;
+  const isShown = ({ show }) => show !== "empty";
+  const device = [state.device, ...state.devices].filter(Boolean).find(isShown) ?? state.device;
   const image = scene.photograph?.image;
   const photo = say(`photo.${PHOTOGRAPHS[image] ?? (isOwn(image) ? "own" : "other")}`);
   const exhibit = hello.exhibits.find(({ name }) => name === state.exhibit)?.scene;
   const kinds = (devices = []) => devices.map(({ kind }) => kind).join();
   const isWhole = kinds(scene.device) === kinds(exhibit?.device);
-  const shows = state.devices.map((one) => one.show ?? "cloak");
   const said = [];
   if (!device) {
     said.push("nobody");
-  } else if (shows.every((show) => show === "empty")) {
+  } else if (!isShown(device)) {
     said.push(["nothing", { photo }]);
   } else if (device.kind === "body" && isWhole && has(`see.${state.exhibit}`)) {
     said.push(`see.${state.exhibit}`);
   } else {
-    const more = state.devices.length - 1;
+    const more = state.devices.filter(isShown).length - 1;
     said.push([more > 0 ? "stands.more" : "stands", { thing: thing(device, hello), n: number(more), photo }]);
     const show = device.show ?? "cloak";
     if (show === "bare") said.push("bare");
-    else if (show === "mirror") said.push(SHEETS.includes(device.kind) && aside(device, scene.camera) === 0 ? "mirror.edge" : "mirror");
+    else if (show === "mirror") {
+      const isEdge = SHEETS.includes(device.kind) && aside(device, scene.camera) === 0;
+      said.push(isEdge ? "mirror.edge" : ROUND.includes(device.kind) ? "mirror.round" : "mirror");
+    }
     else if (isWhole && has(`see.${state.exhibit}`)) said.push([`see.${state.exhibit}`, { a: number(Number(device.angle ?? 90)) }]);
     else said.push(...reasons(device, scene, hello));
-    if (device.imperfection && show === "cloak") said.push("see.imperfect");
+    if (Object.values(device.imperfection ?? {}).some(Boolean) && show === "cloak") said.push("see.imperfect");
   }
   const { polarizer = "none" } = scene.camera ?? {};
   const isSaid = said.some((one) => Array.isArray(one) && ["cloak.through", "cloak.wrong"].includes(one[0]));

@@ -71,7 +71,9 @@ export function showSpectrum(spectrum = "auto") {
 
 // The ways in which the scene's devices can be shown: each those that can.
 function showShows(state, hello, setShow) {
-  const can = (show) => state.devices.some(({ kind }) => hello.kinds[kind]?.shows.includes(show));
+  // Bare metal and mirrors have no core that could be open.
+  const isOpen = state.devices.some(({ core }) => core === "open");
+  const can = (show) => state.devices.some(({ kind }) => hello.kinds[kind]?.shows.includes(show)) && (show === "empty" || !isOpen);
   const segments = document.createElement("div");
   segments.className = "segments";
   const shown = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1)?.show ?? "cloak";

@@ -45,7 +45,10 @@ export function showCorners(device, changed) {
     const handle = document.createElement("button");
     handle.type = "button";
     handle.className = "corner";
-    handle.addEventListener("pointerdown", (event) => handle.setPointerCapture(event.pointerId));
+    handle.addEventListener("pointerdown", (event) => {
+      handle.setPointerCapture(event.pointerId);
+      sectionView.isHeld = true;
+    });
     handle.addEventListener("pointermove", (event) => {
       if (!handle.hasPointerCapture(event.pointerId)) return;
       const frame = layer.getBoundingClientRect();
@@ -53,7 +56,10 @@ export function showCorners(device, changed) {
       const [x, y] = sectionView.pointOf(share.map((one) => Math.min(1, Math.max(0, one))));
       move(all, turned([x - left, y - top], -(device.rotation ?? 0)), handle, true);
     });
-    handle.addEventListener("pointerup", () => changed(false));
+    handle.addEventListener("lostpointercapture", () => {
+      sectionView.isHeld = false;
+      changed(false);
+    });
     handle.addEventListener("keydown", (event) => {
       const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
       if (!by) return;

@@ -51,6 +51,7 @@ export const gallery = {
   },
 
   close() {
+    if (!cards.hidden) scrollTo(0, 0);
     cards.hidden = true;
     document.querySelector("main").hidden = false;
     opener.setAttribute("aria-expanded", "false");

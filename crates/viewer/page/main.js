@@ -95,6 +95,11 @@ function enter() {
   const named = location.hash.length > 1;
   const before = state.embed;
   const linked = named && state.read(location.hash.slice(1), hello);
+  const { image } = state.scene.photograph ?? {};
+  if (linked && isOwn(image) && image !== hello.scene.photograph?.image && !document.body.dataset.pictures) {
+    delete state.scene.photograph;
+    tell(say("copied.photograph"));
+  }
   if (named ? !linked : !state.exhibit) state.open(hello.first ?? "opened", hello.scene);
   if (state.embed !== before && document.body.dataset.pictures) return location.reload();
   embed(new URLSearchParams(location.hash.slice(1)).get("lang"));
@@ -130,14 +135,13 @@ function embed(asked) {
   const key = state.embed;
   document.body.dataset.embed = key;
   if (key === "rotation") return;
+  document.querySelector(".rotation").hidden = true;
   if (key === "moment") {
     state.moment ??= EARLY;
-    document.querySelector(".rotation").hidden = true;
   } else if (key === "wavelength") {
     if (typeof state.scene.light?.spectrum !== "number") state.set("light", "spectrum", 550);
-    document.querySelector(".rotation").replaceWith($("wavelength-label"));
+    $("caption").after($("wavelength-label"));
   } else {
-    document.querySelector(".rotation").hidden = true;
     $("caption").after($("keys"));
   }
 }
@@ -230,6 +234,7 @@ function failed({ id, message, key }) {
   if (id !== null && id < wanted) return;
   writeFault($("banner-text"), message, key);
   showBanner();
+  if (id === null) return;
   // What would be seen, if it could be, is not what is shown.
   delete $("caption").dataset.text;
   write($("caption"), say("see.fault"));
@@ -268,8 +273,6 @@ function setShow(show) {
   for (const device of state.devices) {
     if (!hello.kinds[device.kind]?.shows.includes(show)) continue;
     device.show = show;
-    // Bare metal and mirrors have no core that could be open.
-    if (show !== "cloak") delete device.core;
   }
   showControls();
   changed();
@@ -359,6 +362,7 @@ function follow(at) {
 
 $("exhibit").addEventListener("change", () => {
   guide.close();
+  gallery.close();
   const name = $("exhibit").value;
   const exhibit = hello.exhibits.find((one) => one.name === name);
   state.open(name, exhibit?.scene ?? hello.scene);
@@ -380,7 +384,7 @@ $("play").addEventListener("click", play);
 $("beside").addEventListener("change", () => setBeside($("beside").value));
 $("polarizer").addEventListener("change", () => {
   const word = $("polarizer").value;
-  state.set("camera", "polarizer", word === "angle" ? $("angle").valueAsNumber : word);
+  state.set("camera", "polarizer", word === "angle" ? $("angle").valueAsNumber || 0 : word);
   showControls();
   changed();
 });
@@ -471,8 +475,8 @@ $("copy-link").addEventListener("click", () => {
 });
 $("copy-embed").hidden = words.copied !== "copied" || location.protocol === "file:";
 $("copy-embed").addEventListener("click", () => {
-  const source = `${location.href.split("#")[0]}${state.address("rotation")}&lang=${language}`;
-  copyText(`<iframe src="${source}" width="480" height="520" style="border: 0" title="cloakroom"></iframe>`, say("embedded"));
+  const source = `${location.href.split("#")[0]}${state.address(state.moment === null ? "rotation" : "moment")}&lang=${language}`;
+  copyText(`<iframe src="${source}" width="480" height="520" style="border: 0" allow="fullscreen" title="cloakroom"></iframe>`, say("embedded"));
 });
 // `make` is a way to make a film.
 async function film(make) {
@@ -539,7 +543,8 @@ $("language").addEventListener("change", () => {
 watchTour(
   ({ exhibit, device, beside = "nothing", polarizer }) => {
     stop();
-    if (gallery.isOpen) gallery.close();
+    gallery.close();
+    state.moment = null;
     const scene = copy(hello.exhibits.find(({ name }) => name === exhibit).scene);
     Object.assign(scene.device[0], { show: "cloak", ...device });
     state.open(exhibit, scene);
@@ -562,7 +567,7 @@ watchDivider(state, () => {
 
 watchPointer(state, { changed, follow, resetCamera, say: (word) => tell(say(word)) });
 watchKeys({
-  ready: () => hello !== null,
+  ready: () => hello !== null && !gallery.isOpen,
   play,
   rotate: (by) => rotate((state.device?.rotation ?? 0) + by, true),
   show: (show) => $("shows").querySelector(`input[value="${show}"]`)?.click(),

@@ -77,6 +77,8 @@ function graded({ index, border }, name, color) {
 
 export const sectionView = {
   whole: false,
+  // While a corner is dragged the scale is kept.
+  isHeld: false,
 
   show(newer) {
     section = newer;
@@ -142,6 +144,7 @@ export const sectionView = {
   fit() {
     if (!section) return;
     const near = section.devices.flatMap((device) => [...device.outlines, ...device.metal.map((m) => m.points)]);
+    if (sectionView.isHeld) return sectionView.moved?.();
     const points = near.flat().filter(([x, y]) => Math.abs(x) < 150 && Math.abs(y) < 150);
     if (sectionView.whole || points.length === 0) {
       points.push(...section.photograph);

@@ -133,7 +133,7 @@ const TABLE = {
   copied: ["The link is copied: it shows this view on any machine that reaches this page.", "Der Link ist kopiert: Er zeigt diese Ansicht überall, wo man diese Seite erreicht."],
   "copied.here": ["The link is copied. It leads to this server, which ends with the program, and holds its secret.",
     "Der Link ist kopiert. Er führt zu diesem Server, der mit dem Programm endet, und enthält sein Geheimnis."],
-  "copied.photograph": [" Your photograph is not in it.", " Dein Foto ist nicht darin."],
+  "copied.photograph": [" A photograph of one’s own is not in a link.", " Ein eigenes Foto ist nicht in einem Link."],
   "copied.not": ["The link is in the address bar.", "Der Link steht in der Adresszeile."],
   embedded: ["The HTML is copied.", "Das HTML ist kopiert."],
   filming: ["Filming: {p} %", "Film: {p} %"],
@@ -217,8 +217,8 @@ const TABLE = {
   "n.ideal": ["[[Likeness|likeness]] to what it should look like", "[[Ähnlichkeit|likeness]] mit dem Sollbild"],
   "n.empty": ["Likeness to the empty view", "Ähnlichkeit mit der leeren Ansicht"],
   "n.bare.empty": ["Bare metal’s likeness to the empty view", "Ähnlichkeit des Metalls mit der leeren Ansicht"],
-  "n.note": ["Means over the pixels that meet a device ({s} of {w} × {h}). A turned cloak should look like a mirror and not like nothing: so its likeness to the empty view may be less than that of bare metal, which shades the same pixels evenly. What counts is the first number.",
-    "Mittel über die Bildpunkte, die ein Gerät treffen ({s} von {w} × {h}). Eine gedrehte Tarnung soll wie ein Spiegel aussehen und nicht wie nichts: Daher kann sie der leeren Ansicht weniger gleichen als nacktes Metall, das dieselben Bildpunkte gleichmäßig verdunkelt. Es zählt die erste Zahl."],
+  "n.note": ["Means over the pixels that meet a device ({s} of {w} × {h}). A turned cloak should look like a mirror and not like nothing: so its likeness to the empty view may be less than that of bare metal, which shades the same pixels evenly. What counts is the first number, but it is strict: a carpet or graded glass that moves all light a little misses its place by more than the floor beside a bare bump does.",
+    "Mittel über die Bildpunkte, die ein Gerät treffen ({s} von {w} × {h}). Eine gedrehte Tarnung soll wie ein Spiegel aussehen und nicht wie nichts: Daher kann sie der leeren Ansicht weniger gleichen als nacktes Metall, das dieselben Bildpunkte gleichmäßig verdunkelt. Es zählt die erste Zahl, doch sie ist streng: Ein Teppich oder Glas mit Verlauf, das alles Licht ein wenig verschiebt, verfehlt seinen Ort mehr als der Boden neben einer nackten Beule."],
   "n.old": ["Of the view before; those of this one come when it rests.", "Von der Ansicht zuvor; die von dieser kommen, wenn sie ruht."],
 
   // Maps.
@@ -235,6 +235,8 @@ const TABLE = {
   "map.pruned": ["power not followed", "nicht verfolgte Leistung"],
   "map.extraordinary_share": ["share in the extraordinary wave", "Anteil der außerordentlichen Welle"],
   "map.first_face_reflectance": ["reflected at the first face", "an der ersten Fläche gespiegelt"],
+  "map.first_pulse_depth": ["depth by the first pulse", "Tiefe nach dem ersten Puls"],
+  "map.strongest_pulse_depth": ["depth by the strongest pulse", "Tiefe nach dem stärksten Puls"],
   same: ["everywhere the same", "überall gleich"],
 
   // The menu.
@@ -293,6 +295,7 @@ const TABLE = {
   "thing.double-gaussian-cloak": ["A metal lens {h} cm high", "Eine {h} cm hohe Metalllinse"],
   "thing.cylinder-cloak": ["A metal rod {h} cm thick", "Ein {h} cm dicker Metallstab"],
   "thing.sphere-cloak": ["A metal ball {h} cm across", "Eine {h} cm große Metallkugel"],
+  "thing.open": ["A cloak that is hollow", "Eine hohle Tarnung"],
   "thing.mirror-detour": ["A detour of eight mirrors", "Ein Umweg aus acht Spiegeln"],
   "thing.carpet": ["A bump {h} cm high on a mirror floor", "Eine {h} cm hohe Beule auf einem Spiegelboden"],
   "thing.prisms": ["A device of prisms", "Ein Gerät aus Prismen"],
@@ -315,6 +318,8 @@ const TABLE = {
   mirror: ["Instead of it one sees what the [[cloak|cloak]] imitates: a flat mirror.", "Statt dessen sieht man, was die [[Tarnung|cloak]] nachahmt: einen ebenen Spiegel."],
   "mirror.edge": ["Instead of it one sees what the [[cloak|cloak]] imitates: a flat mirror, edge-on. So there is nothing to be seen.",
     "Statt dessen sieht man, was die [[Tarnung|cloak]] nachahmt: einen ebenen Spiegel, genau von der Kante. Also sieht man nichts."],
+  "mirror.round": ["Instead of it one sees what the [[cloak|cloak]] imitates: a point or a thread, and so nothing.",
+    "Statt dessen sieht man, was die [[Tarnung|cloak]] nachahmt: einen Punkt oder einen Faden, also nichts."],
   // Captions: what one sees, and why.
   "cloak.straight": ["The [[cloak|cloak]] leads light around it and on as before: one sees what is behind, as if nothing were there.",
     "Die [[Tarnung|cloak]] führt das Licht darum herum und weiter wie zuvor: Man sieht, was dahinter ist, als wäre nichts da."],
