@@ -229,6 +229,13 @@ def test_mistakes_are_told() -> None:
         picture(box(cloak=small))
     with pytest.raises(RuntimeError, match="known kinds|kind"):
         mi.load_dict({"type": "cloakroom", "kind": "sphere-clock"})
+    with pytest.raises(ValueError, match="surface"):
+        rooms.device({"kind": "body", "shape": "sphere", "radius": 3, "surface": {}})
+    assert rooms.device({"kind": "square-cloak", "length": np.float32(20), "axis": np.array([0, 1, 0])})["bsdf"]["kind"] == "square-cloak"
+    mi.set_variant("scalar_rgb")
+    for kind in ("cloakroom", "cloakroom_path"):
+        with pytest.raises(RuntimeError, match="scalar_rgb traces rays one by one"):
+            mi.load_dict({"type": kind})
 
 
 POLARIZED = ["llvm_ad_mono_polarized", "llvm_ad_spectral_polarized"]

@@ -42,13 +42,25 @@ _registered: set[str] = set()
 
 
 def register() -> None:
-    """Registers the plugins in the current variant, once; variants without wavefronts have none."""
+    """Registers the plugins in the current variant, once; in variants without wavefronts such that say so."""
     variant = mi.variant()
-    if variant is None or variant in _registered or not variant.startswith(("llvm_", "cuda_")):
+    if variant is None or variant in _registered:
         return
-    mi.register_bsdf("cloakroom", _bsdf())
-    mi.register_integrator("cloakroom_path", _integrator())
+    bsdf, integrator = _refused(variant), _refused(variant)
+    if variant.startswith(("llvm_", "cuda_")):
+        bsdf, integrator = _bsdf(), _integrator()
+    mi.register_bsdf("cloakroom", bsdf)
+    mi.register_integrator("cloakroom_path", integrator)
     _registered.add(variant)
+
+
+def _refused(variant: str) -> Callable[[Any], Any]:
+    def refuse(_: Any) -> Any:
+        raise ValueError(
+            f"{variant} traces rays one by one, and devices many at a time: take a variant that computes wavefronts, such as llvm_ad_rgb"
+        )
+
+    return refuse
 
 
 def _bsdf() -> Callable[[Any], Any]:

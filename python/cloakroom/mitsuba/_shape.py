@@ -110,7 +110,7 @@ def scatterer_of(
         raise ValueError("a device has a kind, such as sphere-cloak, or a scene, the name of a scene file")
     else:
         scene = Scene(devices=keys, light={"wavelength_nm": wavelength_nm})
-    if any(getattr(device, "surface", None) for device in scene.devices):
+    if any(getattr(device, "surface", None) is not None for device in scene.devices):
         raise ValueError("surface: an opaque body in a room is a shape of Mitsuba's own, with a BSDF of its own")
     return Scatterer(scene, to_world=to_world, unit=unit, min_power=min_power)
 
