@@ -130,6 +130,7 @@ export function caption(state, hello) {
     }
     else if (isWhole && has(`see.${state.exhibit}`)) said.push([`see.${state.exhibit}`, { a: number(Number(device.angle ?? 90)) }]);
     else said.push(...reasons(device, scene, hello));
+    if (device.length && show === "cloak" && [...SHEETS, "cylinder-cloak"].includes(device.kind)) said.push("cloak.ends");
     if (Object.values(device.imperfection ?? {}).some(Boolean) && show === "cloak") said.push("see.imperfect");
   }
   const { polarizer = "none" } = scene.camera ?? {};

@@ -279,8 +279,9 @@ export function buildControls(device, kind, changed, only = null) {
       rows.push(...rowsFor([only]));
     } else {
       const core = kind.core_can_be_open ? ["core"] : [];
+      const imperfection = kind.can_be_imperfect ? ["imperfection"] : [];
       const { details, grid } = folded("place", { description: "" }, say("place"));
-      grid.append(...rowsFor(["length", "position", "axis", "metal", "coating", "dispersion", "imperfection"]));
+      grid.append(...rowsFor(["length", "position", "axis", "metal", "coating", "dispersion", ...imperfection]));
       rows.push(...rowsFor([...kind.own_keys, ...core]), details);
     }
   }

@@ -364,6 +364,8 @@ $("exhibit").addEventListener("change", () => {
   guide.close();
   gallery.close();
   const name = $("exhibit").value;
+  // The way back is to what was shown before.
+  history.pushState(null, "", location.href);
   const exhibit = hello.exhibits.find((one) => one.name === name);
   state.open(name, exhibit?.scene ?? hello.scene);
   showControls();

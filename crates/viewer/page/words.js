@@ -345,6 +345,7 @@ const TABLE = {
   "cloak.prisms": ["Each prism bends light another way: a cloak need not be more than this. Drag its corners in the cross-section.",
     "Jedes Prisma biegt Licht anders: Mehr braucht eine Tarnung nicht. Seine Ecken lassen sich im Schnitt verschieben."],
   "cloak.open": ["Its core is open: what stands in it is hidden as long as it is not turned.", "Ihr Kern ist offen: Was darin steht, ist verborgen, solange sie nicht gedreht ist."],
+  "cloak.ends": ["Its ends are not cloaked.", "Ihre Enden sind nicht getarnt."],
   "see.invisible-sphere": ["Light makes a loop in it and goes on as before: only a clock can tell that it is there.", "Licht macht darin eine Schleife und geht weiter wie zuvor: Nur eine Uhr merkt, dass sie da ist."],
   "see.invisible-sphere-regularized": ["Made of crystal it is invisible for half of the light; the other half is refracted as by dense glass.", "Aus Kristall ist sie für die Hälfte des Lichts unsichtbar; die andere Hälfte wird gebrochen wie von dichtem Glas."],
   "see.bending-sphere": ["It turns all light by {a}°: in it one sees what is beside and above.", "Sie dreht alles Licht um {a}°: Man sieht in ihr, was daneben und darüber ist."],

@@ -2,7 +2,7 @@
 
 use crate::protocol::LARGEST_PHOTOGRAPH;
 use crate::scenes::{Opened, tables};
-use cloakroom::device::{CATALOGUE, Core, Entry, Request, Show};
+use cloakroom::device::{CATALOGUE, Core, Entry, Imperfection, Request, Show};
 use cloakroom::scene_file;
 use cloakroom_figures::gallery::EXHIBITS;
 use serde_json::{Map, Value, json};
@@ -57,6 +57,8 @@ fn kind(entry: &Entry, schema: &Value) -> Value {
         shows.push("empty");
     }
     let keys: Vec<&str> = entry.keys.iter().map(|key| key.name).collect();
+    // What cannot be built without keys of one's own may be imperfect.
+    let is_imperfect = |built| Imperfection::default().apply(built, (0, 0)).is_ok();
     json!({
         "title": entry.title,
         "summary": entry.summary,
@@ -64,6 +66,7 @@ fn kind(entry: &Entry, schema: &Value) -> Value {
         "keys": schema["$defs"][entry.kind]["properties"],
         "shows": shows,
         "core_can_be_open": built(Show::Cloak, Core::Open).is_some_and(|built| built.hull.filled.is_some()),
+        "can_be_imperfect": built(Show::Cloak, Core::Metal).is_none_or(is_imperfect),
     })
 }
 
@@ -90,6 +93,15 @@ mod tests {
         );
         assert_eq!(hello["kinds"]["square-cloak"]["core_can_be_open"], true);
         assert_eq!(hello["kinds"]["luneburg-lens"]["shows"], json!(["cloak"]));
+        for (kind, can) in [
+            ("square-cloak", true),
+            ("double-gaussian-cloak", true),
+            ("prisms", true),
+            ("sphere-cloak", false),
+            ("mirror", false),
+        ] {
+            assert_eq!(hello["kinds"][kind]["can_be_imperfect"], can, "{kind}");
+        }
         let exhibits = hello["exhibits"].as_array().expect("exhibits");
         assert_eq!(exhibits.len(), EXHIBITS.len());
         let around = |exhibit: &Value| exhibit["scene"]["surroundings"]["image"] == ROOM;
