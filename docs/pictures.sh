@@ -81,7 +81,7 @@ mkdir "$work/rooms"
 room() {
   local name=$1 scene=scenes/rooms/$2.xml
   shift 2
-  python3 -m cloakroom.mitsuba "$scene" --size 400x300 --samples 256 --quiet "$@" -o "$work/rooms/$name.exr"
+  python3 -m cloakroom.mitsuba "$scene" --size 400x300 --samples 256 --denoise --quiet "$@" -o "$work/rooms/$name.exr"
 }
 room 1 bar
 room 2 bar --device cylinder-cloak:inner=3,outer=7,show=bare --length 60
