@@ -331,11 +331,14 @@ test("a German page says in German what is wrong, and of sentences that it does 
     { device: [{ ...cloak, position: [50, 0, 0] }] },
     { device: [cloak], photograph: { image: "/etc/passwd" } },
     { device: [{ kind: "cylinder-cloak", inner: 9, outer: 5 }] },
+    { device: [{ kind: "double-gaussian-cloak", h: 15 }] },
+    { device: [{ kind: "grating-carpet", floor: 5 }] },
+    { device: [{ kind: "prisms", prism: [0, 1].map((by) => ({ index: 1.5, corners: [[by, by], [5, 0], [0, 5]] })) }] },
     { device: [{ kind: "body", colour: 1 }] },
   ];
   const known = [/Radius ist -5 cm; erlaubt ist/, /Kappa ist 7; erlaubt ist/, /Gerät 1 \("left"\) und Gerät 0 überlappen sich; eines/, /denselben Vorrang/, /Die Kamera steht in Gerät 0/,
     /Gerät 0 .* ragt durch das Foto/, /kann keine öffnen/,
-    /erlaubt ist 0.005 bis 4.995 cm, das 0.001- bis 0.999-Fache von außen/, /sagt auf Englisch, warum: unknown key `colour`/];
+    /erlaubt ist 0.005 bis 4.995 cm, das 0.001- bis 0.999-Fache von außen/, /kleiner als 0\.886 sein und ist 1\.497/, /Boden ist 5 cm; nötig ist die Breite des Geräts, 60 cm/, /Prisma 1 und Prisma 0 überlappen/, /sagt auf Englisch, warum: unknown key `colour`/];
   const { page } = await open();
   await choose(page, "language", "de");
   for (const [i, scene] of scenes.entries()) {
@@ -542,6 +545,13 @@ test("an embedded view of one wavelength has its slider, and a tour begins witho
   assert.match(await says(page), /gathers parallel light/);
   assert.deepEqual(complaints, []);
   await page.close();
+  // A photograph that was brought to another page is not to be had.
+  const scene = { device: [{ kind: "square-cloak" }], photograph: { image: "holiday.png" } };
+  const lost = await open(`#${Buffer.from(JSON.stringify({ scene, samples: 1, width: 320 })).toString("base64url")}`);
+  assert.match(await lost.page.textContent("#toast-text"), /of one’s own is not in a link/);
+  assert.match(await says(lost.page), /in front of the person/);
+  assert.deepEqual(lost.complaints, []);
+  await lost.page.close();
 });
 
 test("the outermost corner goes where the pointer goes", async () => {

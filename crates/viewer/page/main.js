@@ -96,7 +96,9 @@ function enter() {
   const before = state.embed;
   const linked = named && state.read(location.hash.slice(1), hello);
   const { image } = state.scene.photograph ?? {};
-  if (linked && isOwn(image) && image !== hello.scene.photograph?.image && !document.body.dataset.pictures) {
+  // One that was brought, by its plain name, is gone with the page that it was brought to.
+  const isLost = isOwn(image) && !/[\\/]/.test(image) && image !== hello.scene.photograph?.image;
+  if (linked && isLost && !document.body.dataset.pictures) {
     delete state.scene.photograph;
     tell(say("copied.photograph"));
   }
