@@ -554,6 +554,31 @@ test("an embedded view of one wavelength has its slider, and a tour begins witho
   await lost.page.close();
 });
 
+test("a body has the controls of its shape", async () => {
+  const scene = { device: [{ kind: "body", shape: "sphere", radius: 9, index: 1.5 }] };
+  const { page, complaints } = await open(`#${Buffer.from(JSON.stringify({ scene, samples: 1, width: 320 })).toString("base64url")}`);
+  const sizes = async () => {
+    const labels = await page.locator("#keys input[type=number]").evaluateAll((all) => all.map((one) => one.getAttribute("aria-label")));
+    return labels.filter((label) => /^(radius|size|thickness|length)/.test(label)).map((label) => label.split(",")[0]);
+  };
+  assert.deepEqual(await sizes(), ["radius"]);
+  for (const [shape, has, caption] of [
+    ["box", ["size x", "size y", "size z"], /^A block/],
+    ["cylinder", ["radius", "length"], /^A rod 10 cm thick/],
+    ["slab", ["thickness"], /^A block/],
+    ["sphere", ["radius"], /^A ball 10 cm across/],
+  ]) {
+    await page.selectOption("#keys select", shape);
+    await finished(page);
+    assert.deepEqual(await sizes(), has);
+    assert.match(await says(page), caption);
+    assert.ok(!(await page.locator("#banner").isVisible()), shape);
+    assert.equal(await page.evaluate(() => document.activeElement.value), shape);
+  }
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
 test("the outermost corner goes where the pointer goes", async () => {
   const { page, complaints } = await open("#prisms");
   await small(page, "1");

@@ -260,10 +260,15 @@ function row(name, schema, controls) {
 // Ways to say what a medium is.
 const MEDIUM = ["permittivity", "index", "uniaxial", "biaxial", "material"];
 
+// The sizes that a body has, by its shape.
+const SIZES = { slab: ["thickness"], box: ["size"], sphere: ["radius"], cylinder: ["radius", "length"] };
+
 // Builds the controls of a device, or the `only` one; `changed` is told whether more changes will follow.
 export function buildControls(device, kind, changed, only = null) {
   const rows = [];
   if (device && kind) {
+    const sizes = device.kind === "body" ? Object.values(SIZES).flat() : [];
+    const fits = (name) => !sizes.includes(name) || SIZES[device.shape ?? kind.keys.shape.default]?.includes(name);
     const setter = (name) => (value, moving) => {
       if (value === undefined) delete device[name];
       else {
@@ -271,10 +276,15 @@ export function buildControls(device, kind, changed, only = null) {
         if (MEDIUM.includes(name)) for (const other of [...MEDIUM, "optic_axis"]) delete device[other];
         device[name] = value;
       }
+      if (name === "shape" && sizes.length > 0) {
+        for (const size of sizes) if (!fits(size)) delete device[size];
+        buildControls(device, kind, changed, only);
+        keys.querySelector("select").focus();
+      }
       changed(moving);
     };
     const rowsFor = (names) =>
-      names.filter((name) => kind.keys[name]).flatMap((name) => rowsOf(name, kind.keys[name], device[name], setter(name)));
+      names.filter((name) => kind.keys[name] && fits(name)).flatMap((name) => rowsOf(name, kind.keys[name], device[name], setter(name)));
     if (only) {
       rows.push(...rowsFor([only]));
     } else {
