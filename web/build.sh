@@ -46,15 +46,17 @@ mkdir -p "$out"
 cp crates/viewer/page/* "$out"
 cp web/line.js web/worker.js "$out"
 chmod -R u+w,a+r "$out"
-# Comments and indents are for who reads the source: an eighth of what is loaded of it.
-sed -i '/^ *\/\/ /d; /^ *\/\*.*\*\/$/d; /^ *\/\*\*$/,/\*\/$/d; s/^ *//' "$out"/*.js "$out"/*.css
+# Comments, indents and empty lines are for who reads the source: an eighth of what is loaded of it.
+sed -i '/^ *\/\/ /d; /^ *\/\*.*\*\/$/d; /^ *\/\*\*$/,/\*\/$/d; s/^ *//; /^$/d' "$out"/*.js "$out"/*.css
+sed -i 's/ *{ */{/g; s/; *}/}/g; s/: \([^:]\)/:\1/g; s/; /;/g' "$out"/*.css
+sed -i 's/ => /=>/g; s/ === /===/g' "$out"/*.js
 # What a server says in its headers, the page says itself: it loads what is in its folder.
 policy="default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'"
 sed -i "s|^  <meta charset=\"utf-8\">|&\n  <meta http-equiv=\"Content-Security-Policy\" content=\"$policy\">|" "$out/index.html"
 # The line to the worker comes before the rest of the page.
 sed -i 's|^  <script type="module" src="main.js"></script>|  <script type="module" src="line.js"></script>\n&|' "$out/index.html"
 grep -q Content-Security-Policy "$out/index.html" && grep -q 'src="line.js"' "$out/index.html"
-sed -i 's/^ *//' "$out/index.html"
+sed -i 's/^ *//; /^$/d' "$out/index.html"
 # For those who have no web server.
 "$built/debug/cloakroom-web-glue" one-file "$out" "$out.html"
 du -sb "$out" | cut -f1 | xargs printf '%s bytes in '

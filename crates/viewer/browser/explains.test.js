@@ -488,7 +488,7 @@ test("a cloak that is hollow is no metal, and what is in it stays when it is tak
   await small(page, "1");
   const shows = () => page.locator("#shows input").evaluateAll((all) => all.map(({ value }) => value));
   assert.deepEqual(await shows(), ["cloak", "empty"]);
-  assert.match(await says(page), /A cloak that is hollow and 1 more stand in front of the person\. Its core is open/);
+  assert.match(await says(page), /A hollow cloak and 1 more stand in front of the person\. Its core is open/);
   await page.keyboard.press("b");
   await page.locator("#shows input[value=empty]").check({ force: true });
   await finished(page);
@@ -512,7 +512,7 @@ test("a cloak that is hollow is no metal, and what is in it stays when it is tak
   assert.ok(!(await says(page)).includes("ends"));
   await page.goto(`${server.address}#sphere-cloak&show=mirror`);
   await finished(page);
-  assert.match(await says(page), /a point or a thread, and so nothing/);
+  assert.match(await says(page), /a point or a thread, so nothing/);
   assert.deepEqual(complaints, []);
   await page.close();
 });
