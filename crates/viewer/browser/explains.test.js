@@ -483,6 +483,13 @@ test("a class on one network opens the link, and nobody without it", { skip: !ne
   await shared.end();
 });
 
+// Follows a link on the same page, whose address is written anew as soon as it has been read.
+async function follow(page, link) {
+  await page.goto(`${server.address}${link}`);
+  await page.waitForFunction((link) => location.hash !== link, link);
+  await finished(page);
+}
+
 test("a cloak that is hollow is no metal, and what is in it stays when it is taken away", async () => {
   const { page, complaints } = await open("#open-core");
   await small(page, "1");
@@ -498,20 +505,16 @@ test("a cloak that is hollow is no metal, and what is in it stays when it is tak
   assert.match(await says(page), /hollow/);
   assert.ok(!(await page.locator("#banner").isVisible()));
   // What is led around follows the axis of the cloak, and a polarizer half a turn on is the same.
-  await page.goto(`${server.address}#square-cloak-negative-uniaxial&polarizer=180`);
-  await finished(page);
+  await follow(page, "#square-cloak-negative-uniaxial&polarizer=180");
   assert.match(await says(page), /horizontal polarizer lets only that polarization pass that is led around/);
-  await page.goto(`${server.address}#standing-cylinder-cloak`);
-  await finished(page);
+  await follow(page, "#standing-cylinder-cloak");
   assert.match(await says(page), /Its ends are not cloaked/);
   // What light is followed through in closed form has no controls of how it is made.
   assert.equal(await page.locator("#keys details[data-name=imperfection]").count(), 0);
-  await page.goto(`${server.address}#double-gaussian-cloak`);
-  await finished(page);
+  await follow(page, "#double-gaussian-cloak");
   assert.equal(await page.locator("#keys details[data-name=imperfection]").count(), 1);
   assert.ok(!(await says(page)).includes("ends"));
-  await page.goto(`${server.address}#sphere-cloak&show=mirror`);
-  await finished(page);
+  await follow(page, "#sphere-cloak&show=mirror");
   assert.match(await says(page), /a point or a thread, so nothing/);
   assert.deepEqual(complaints, []);
   await page.close();
@@ -532,6 +535,7 @@ test("an embedded view of one wavelength has its slider, and a tour begins witho
   assert.ok(!(await says(page)).includes("flashes"));
   // The menu leads out of the page of all devices, whose keys turn nothing.
   await page.goto(`${server.address}#gallery`);
+  await page.waitForSelector("#cards:not([hidden])");
   await page.keyboard.press("b");
   await page.selectOption("#exhibit", "luneburg-lens");
   await finished(page);
@@ -583,16 +587,19 @@ test("the outermost corner goes where the pointer goes", async () => {
   const { page, complaints } = await open("#prisms");
   await small(page, "1");
   const boxes = await page.locator(".corner").evaluateAll((all) => all.map((one) => one.getBoundingClientRect().top));
-  const highest = page.locator(".corner").nth(boxes.indexOf(Math.min(...boxes)));
+  const number = boxes.indexOf(Math.min(...boxes));
+  const highest = page.locator(".corner").nth(number);
   const { x, y, width, height } = await highest.boundingBox();
   const at = [x + width / 2, y + height / 2];
   await page.mouse.move(...at);
   await page.mouse.down();
   for (let step = 1; step <= 8; step += 1) {
     await page.mouse.move(at[0], at[1] - 3 * step);
-    await page.waitForTimeout(40);
-    const now = await highest.boundingBox();
-    assert.ok(Math.abs(now.y + now.height / 2 - (at[1] - 3 * step)) < 2);
+    const isThere = ([number, down]) => {
+      const { top, height } = document.querySelectorAll(".corner")[number].getBoundingClientRect();
+      return Math.abs(top + height / 2 - down) < 2;
+    };
+    await page.waitForFunction(isThere, [number, at[1] - 3 * step], { timeout: 10000 });
   }
   await page.mouse.up();
   await finished(page);
