@@ -54,7 +54,7 @@ def is_endless(given: dict[str, Any]) -> bool:
 
     def fails(keys: dict[str, Any]) -> bool:
         try:
-            box_of(scatterer_of(keys, np.eye(4), 1.0, 550.0, MIN_POWER))
+            _box(keys, np.eye(4), 1.0)
         except ValueError:
             return True
         return False
@@ -135,7 +135,8 @@ class Room:
         shape = self._shape(name)
         own = shape.find("bsdf[@type='cloakroom']")
         if unit is None:
-            written = [self._plain(device).find("float[@name='unit']") for device in self.root.iter("bsdf") if _is_device(device)]
+            devices = self.root.iterfind(".//bsdf[@type='cloakroom']")
+            written = [self._plain(each).find("float[@name='unit']") for each in devices]
             units = {1.0 if each is None else float(each.get("value", "1")) for each in written}
             unit = units.pop() if len(units) == 1 else 100.0
         if see_through is None:
@@ -146,7 +147,7 @@ class Room:
         middle, lowest, turn = self._place(self._plain(shape), own, given, unit)
         to_world = np.eye(4)
         to_world[:3, :3] = turn
-        box = box_of(scatterer_of(given, to_world, unit, 550.0, MIN_POWER))
+        box = _box(given, to_world, unit)
         # The device's own middle may be anywhere in its frame.
         to_world[:3, 3] = middle - box.to_world[:3, 3]
         if stands:
@@ -212,30 +213,26 @@ class Room:
     def _place(
         self, shape: Any, own: Any, given: dict[str, Any], unit: float
     ) -> tuple[NDArray[np.float64], float, NDArray[np.float64]]:
-        """The middle of a shape, its lowest point, and how it is turned as the place of a device."""
+        """The middle of a shape, its lowest point, and how it is turned as the place of a device; of a copy, which is changed."""
         alone = ElementTree.Element("scene", version="3.0.0")
-        bare = ElementTree.fromstring(ElementTree.tostring(shape))
-        for child in list(bare):
+        for child in list(shape):
             if child.tag in ("bsdf", "ref", "emitter"):
-                bare.remove(child)
-        for file in bare.findall("string[@name='filename']"):
+                shape.remove(child)
+        for file in shape.findall("string[@name='filename']"):
             file.set("value", str(self._file(file.get("value", ""))))
-        alone.append(bare)
+        alone.append(shape)
         (only,) = mi.load_string(ElementTree.tostring(alone, encoding="unicode")).shapes()
         box = only.bbox()
         low, high = np.array(box.min, np.float64).ravel(), np.array(box.max, np.float64).ravel()
         matrix = _matrix(shape)
-        turn, size, _ = np.linalg.svd(matrix)
-        if size[-1] <= 0:
+        if np.linalg.svd(matrix)[1][-1] <= 0:
             raise ValueError(f"{self.path}: the shape {_names(shape)[:1]} is flat; it has no place for a device")
         # The rotation next to the matrix, without its scales.
-        columns = matrix / np.linalg.norm(matrix, axis=0)
-        turn, _, other = np.linalg.svd(columns)
-        turn = turn @ np.diag([1, 1, np.linalg.det(turn @ other)]) @ other
+        turn = _rotation_next_to(matrix / np.linalg.norm(matrix, axis=0))
         if np.array_equal(matrix, np.eye(3)) and only.is_mesh():
             # An outline is that of the device before it is turned about its own axis.
             unturned = {key: value for key, value in given.items() if key != "rotation"}
-            turn = _turn_of_box(only, box_of(scatterer_of(unturned, np.eye(4), unit, 550.0, MIN_POWER)))
+            turn = _turn_of_box(only, _box(unturned, np.eye(4), unit))
         if own is not None:
             written = own.find("transform[@name='to_world']")
             turn = np.eye(3) if written is None else _turn_of(written)
@@ -260,8 +257,9 @@ class Room:
         ElementTree.SubElement(bsdf, "float", name="unit", value=repr(float(unit)))
 
 
-def _is_device(bsdf: Any) -> bool:
-    return bool(bsdf.get("type") == "cloakroom")
+def _box(given: dict[str, Any], to_world: NDArray[np.float64], unit: float) -> Box:
+    """The box around a device, which is the same at all wavelengths."""
+    return box_of(scatterer_of(given, to_world, unit, 550.0, MIN_POWER))
 
 
 def _names(shape: Any) -> list[str]:
@@ -318,18 +316,21 @@ def _turn_of_box(mesh: Any, own: Box) -> NDArray[np.float64]:
         return np.eye(3)
     found, halves = np.column_stack(axes), np.array([np.ptp(corners @ axis) / 2 for axis in axes])
     orders = [list(order) for order in itertools.permutations(range(3))]
-    outlines = [order for order in orders if np.allclose(halves[order][:2], own.halves[:2], rtol=SIMILAR)]
-    frame = own.to_world[:3, :3] if outlines and not own.ball else np.eye(3)
+    outlines = [order for order in orders if not own.ball and np.allclose(halves[order][:2], own.halves[:2], rtol=SIMILAR)]
+    frame = own.to_world[:3, :3] if outlines else np.eye(3)
     # Of all rotations from one frame to the other that next to none.
     turns = []
-    for order in outlines if outlines and not own.ball else orders:
+    for order in outlines or orders:
         for signs in itertools.product((1, -1), repeat=3):
             turn = found[:, order] * signs @ frame.T
             if np.linalg.det(turn) > 0:
                 turns.append(turn)
-    near = max(turns, key=np.trace)
-    turn, _, other = np.linalg.svd(near)
-    rotation: NDArray[np.float64] = turn @ other
+    return _rotation_next_to(max(turns, key=np.trace))
+
+
+def _rotation_next_to(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    turn, _, other = np.linalg.svd(matrix)
+    rotation: NDArray[np.float64] = turn @ np.diag([1, 1, np.linalg.det(turn @ other)]) @ other
     return rotation
 
 
