@@ -425,7 +425,8 @@ def _integrator() -> Callable[[Any], Any]:
                 one is not other for one, other in zip(shapes, self._room.shapes)
             ):
                 self._room = _Room(scene)
-            self._room.check_bounds()
+            else:
+                self._room.check_bounds()
             return self._room
 
         def render(
