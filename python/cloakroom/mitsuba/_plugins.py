@@ -509,7 +509,9 @@ def _integrator() -> Callable[[Any], Any]:
             state = self._launched(ray, active, width, sky)
             clear = self.see_through and any(room.clear)
             if not room.shapes:
+                # Nothing is to be gone on with, so that no more of the state is kept.
                 state, _, _ = self._follow(scene, sampler, state, room, False)
+                dr.eval(state["result"], state["valid"])
                 return dr.select(state["valid"], state["result"], 0), state["valid"], []
             # Leaves are drawn by numbers that the sampler's own are not used up for.
             own = dr.reinterpret_array(mi.UInt32, sampler.clone().next_1d())
@@ -568,7 +570,6 @@ def _integrator() -> Callable[[Any], Any]:
                 if name in ("wavelengths", "alone") and not mi.is_spectral:
                     continue
                 spread[name] = value + dr.zeros(type(value), width) if not dr.is_mask_v(value) else value
-            dr.make_opaque(spread)
             return spread
 
         def _follow(self, scene: Any, sampler: Any, state: dict[str, Any], room: _Room, clear: bool) -> Any:
@@ -587,7 +588,8 @@ def _integrator() -> Callable[[Any], Any]:
                     shadows["alone"] = dr.zeros(mi.Bool, width * SLOTS)
                 state["slots"] = dr.zeros(mi.UInt32, width)
             row = dr.arange(mi.UInt32, width) * SLOTS if clear else mi.UInt32(0)
-            dr.make_opaque(state)
+            if room.shapes:
+                dr.make_opaque(state)
             names = list(state)
             values = tuple(state[name] for name in names)
             place = {name: number for number, name in enumerate(names)}
@@ -605,8 +607,9 @@ def _integrator() -> Callable[[Any], Any]:
                 (sampler, row, *values), goes_on, step, labels=["sampler", "row", *names], label="path among devices"
             )
             state = dict(zip(names, values))
-            sampler.schedule_state()
-            dr.eval(state, shadows)
+            if room.shapes:
+                sampler.schedule_state()
+                dr.eval(state, shadows)
             return state, shadows, sampler
 
         def _step(self, scene: Any, sampler: Any, now: dict[str, Any], room: _Room, shadows: Any, row: Any) -> None:
@@ -657,8 +660,11 @@ def _integrator() -> Callable[[Any], Any]:
             weight = si.to_world_mueller(weight, -bs.wo, si.wi)
             shadow = si.spawn_ray_to(ds.p)
             lit = samples & dr.any(value != 0) if not mi.is_polarized else samples
-            found = scene.ray_intersect_preliminary(shadow, False, lit)
-            blocked = found.is_valid()
+            if room.shapes:
+                found = scene.ray_intersect_preliminary(shadow, False, lit)
+                blocked = found.is_valid()
+            else:
+                blocked = scene.ray_test(shadow, False, lit)
             mis = dr.select(ds.delta, 1, _mis(ds.pdf, pdf))
             if mi.is_polarized:
                 # Lamps are unpolarized. What a device does to their light comes before what is done here.
