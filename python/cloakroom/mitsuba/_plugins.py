@@ -588,8 +588,7 @@ def _integrator() -> Callable[[Any], Any]:
                     shadows["alone"] = dr.zeros(mi.Bool, width * SLOTS)
                 state["slots"] = dr.zeros(mi.UInt32, width)
             row = dr.arange(mi.UInt32, width) * SLOTS if clear else mi.UInt32(0)
-            if room.shapes:
-                dr.make_opaque(state)
+            dr.make_opaque(state)
             names = list(state)
             values = tuple(state[name] for name in names)
             place = {name: number for number, name in enumerate(names)}
