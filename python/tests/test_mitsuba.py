@@ -653,6 +653,25 @@ def test_devices_that_nobody_would_see_are_refused() -> None:
         scene.integrator().render(scene, spp=1)
 
 
+def test_meshes_without_bounds_are_refused_in_light_from_afar() -> None:
+    """Mitsuba makes one mesh of those that have the same BSDF, forgets how large it is, and shortens shadow rays to the sky."""
+    matt = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.5}}
+    planes = {f"plane{x}": {"type": "rectangle", "to_world": mi.ScalarTransform4f().translate([0, 0, x]), "bsdf": matt} for x in (-40, 40)}
+    room = {
+        "type": "scene",
+        "integrator": {"type": "cloakroom_path"},
+        "sky": {"type": "constant"},
+        "sensor": camera([-60, 0, 0], 20, 8, 8),
+        "device": rooms.device(SPHERE_CLOAK),
+        **planes,
+    }
+    scene = mi.load_dict(room)
+    with pytest.raises(ValueError, match="optimize=False"):
+        scene.integrator().render(scene, spp=1)
+    scene = mi.load_dict(room, optimize=False)
+    scene.integrator().render(scene, spp=1)
+
+
 def test_thin_devices_have_a_place() -> None:
     """A mirror that has no thickness, and one of Mitsuba's."""
     place = mi.ScalarTransform4f().translate([0.2, 0.6, 0.3]).rotate([0, 1, 0], 60)

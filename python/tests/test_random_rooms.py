@@ -60,13 +60,13 @@ class World:
         return self.frame @ mi.ScalarTransform4f().translate((np.asarray(at, float) / self.unit).tolist()) @ turn
 
     def room(self, random: Random, lamp: str) -> dict[str, Any]:
-        """A floor and a wall in two colors, a lamp, a dim sky and a camera that looks at the origin."""
+        """A floor and a wall that shines, both in two colors, a lamp, a dim sky and a camera that looks at the origin."""
         up = mi.ScalarTransform4f()
         squares = {
             "type": "checkerboard",
             "color0": {"type": "rgb", "value": random.uniform(0.05, 0.3, 3).tolist()},
             "color1": {"type": "rgb", "value": random.uniform(0.3, 0.6, 3).tolist()},
-            "to_uv": up.scale(8),
+            "to_uv": up.scale(12),
         }
         matt = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": squares}}
         aside = np.array([random.uniform(-25, 25), 60, random.uniform(-25, 25)])
@@ -92,12 +92,12 @@ class World:
             "type": "scene",
             "integrator": {"type": "path", "max_depth": 64, "rr_depth": 64},
             "floor": {"type": "rectangle", "to_world": below, "bsdf": matt},
-            "wall": {"type": "rectangle", "to_world": behind, "bsdf": matt},
+            "wall": {"type": "rectangle", "to_world": behind, "bsdf": matt, "emitter": {"type": "area", "radiance": squares}},
             "lamp": lamps[lamp],
             "sky": {"type": "constant", "radiance": {"type": "rgb", "value": 0.2}},
             "sensor": {
                 "type": "perspective",
-                "fov": 40,
+                "fov": 32,
                 "near_clip": 1.0 / self.unit,
                 "far_clip": 1e4 / self.unit,
                 "to_world": self.scaled @ up.look_at(eye.tolist(), [0, 0, 0], [0, 1, 0]) @ up.scale(self.unit),
@@ -108,7 +108,8 @@ class World:
 
 
 def picture(room: dict[str, Any], samples: int, seed: int = 0, integrator: str = "cloakroom_path") -> Image:
-    scene = mi.load_dict({**room, "integrator": {**room["integrator"], "type": integrator}})
+    # Mitsuba loses the bounds of meshes that it makes one of, and with them light of the sky.
+    scene = mi.load_dict({**room, "integrator": {**room["integrator"], "type": integrator}}, optimize=False)
     image = np.array(scene.integrator().render(scene, seed=seed, spp=samples), np.float64)
     assert np.isfinite(image).all()
     return image
@@ -121,16 +122,16 @@ def bodies(random: Random) -> list[tuple[dict[str, Any], Any, Any]]:
         at = np.array([random.uniform(-4, 4), random.uniform(-2, 6), x])
         shape = str(random.choice(["sphere", "box", "cylinder"]))
         size: dict[str, Any] = {
-            "sphere": {"radius": random.uniform(2, 6)},
-            "box": {"size": random.uniform(2, 6, 3)},
-            "cylinder": {"radius": random.uniform(1.5, 3.5), "length": random.uniform(3, 7)},
+            "sphere": {"radius": random.uniform(4, 6.5)},
+            "box": {"size": random.uniform(5, 8, 3)},
+            "cylinder": {"radius": random.uniform(2.5, 4), "length": random.uniform(6, 10)},
         }[shape]
         matter: dict[str, Any] = [
             {"index": random.uniform(1.1, 2.2)},
             {"index": random.uniform(0.6, 0.95)},
             {"metal": True},
             {"metal": {"index": [random.uniform(0.2, 3), random.uniform(1, 4)]}},
-        ][random.choice(4, p=[0.5, 0.1, 0.1, 0.3])]
+        ][random.choice(4, p=[0.6, 0.1, 0.1, 0.2])]
         found.append(({"kind": "body", "shape": shape, **size, **matter}, at, turned(random)))
     return found
 
@@ -168,11 +169,6 @@ def of_mitsuba(world: World, keys: dict[str, Any], at: Any, turn: Any) -> list[d
     return [side, *({"type": "disk", "to_world": end, "bsdf": matter} for end in ends)]
 
 
-def blocks(image: Image) -> Image:
-    """The mean light in 8 x 8 parts of a picture."""
-    return image.mean(axis=-1).reshape(8, 4, 8, 4).mean(axis=(1, 3))
-
-
 @pytest.mark.parametrize("seed", range(6 * TIMES))
 def test_bodies_are_those_of_mitsuba(seed: int, tmp_path: Path) -> None:
     """Light in parts of the picture, by how much it differs from picture to picture."""
@@ -202,18 +198,22 @@ def test_bodies_are_those_of_mitsuba(seed: int, tmp_path: Path) -> None:
         for number, (keys, at, turn) in enumerate(placed)
         for place, part in enumerate(of_mitsuba(world, keys, at, turn))
     }
-    seeds = range(1, 9)
-    own = np.array([blocks(picture({**room, **ours}, 64, each)) for each in seeds])
-    wanted = np.array([blocks(picture({**room, **theirs}, 64, each, "path")) for each in seeds])
-    off = own.mean(axis=0) - wanted.mean(axis=0)
-    error = np.sqrt((own.var(axis=0, ddof=1) + wanted.var(axis=0, ddof=1)) / len(seeds))
-    error = np.maximum(error, 1e-4 * wanted.mean())
+    seeds = range(8)
+    # The same numbers are drawn, so that most of what is random is the same in both.
+    own = np.array([picture({**room, **ours}, 64, each).mean(axis=-1) for each in seeds])
+    wanted = np.array([picture({**room, **theirs}, 64, each, "path").mean(axis=-1) for each in seeds])
+    off = own - wanted
+    light = wanted.mean()
     told = f"unit {world.unit:.3g}, {lamp}, {placed}"
-    assert np.mean(np.square(off / error)) < 2, told
-    whole_error = np.sqrt(np.square(error).sum()) / error.size
-    assert abs(off.mean()) < 4 * whole_error + 2e-4 * wanted.mean(), told
+    # Parts of 2 x 2 pixels, in standard errors of their means; where nothing is random, by what rounding does to a ray in a thousand.
+    parts = off.reshape(8, 16, 2, 16, 2).mean(axis=(2, 4))
+    error = np.maximum(parts.std(axis=0, ddof=1) / np.sqrt(8), 1e-4 * light)
+    assert np.square(parts.mean(axis=0) / error).mean() < 3, told
+    whole = off.mean(axis=(1, 2))
+    error = whole.std(ddof=1) / np.sqrt(8) + 1e-4 * light
+    assert abs(whole.mean()) < 4 * error, told
     # So that there is something to miss.
-    assert whole_error < 5e-3 * wanted.mean(), told
+    assert error < 3e-3 * light, told
 
 
 @pytest.mark.parametrize("seed", range(4 * TIMES))

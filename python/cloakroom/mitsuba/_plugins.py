@@ -153,6 +153,7 @@ class _Room:
         self.check_bounds()
         self._check_all_found(scene)
         if self.shapes:
+            self._check_merged(scene)
             table = np.zeros(max(numbers) + 1, dtype=np.uint32)
             for place, number in numbers.items():
                 table[place] = number
@@ -182,6 +183,16 @@ class _Room:
             raise ValueError(
                 f"the device {' or '.join(hidden)} is within another BSDF or a group of shapes that is instanced: put its "
                 "bounding shape into the scene itself"
+            )
+
+    @staticmethod
+    def _check_merged(scene: Any) -> None:
+        """Refuses meshes without bounds in light from afar: shadow rays to it go as far as the bounds of the scene say."""
+        afar = any(mi.has_flag(lamp.flags(), mi.EmitterFlags.Infinite) for lamp in scene.emitters())
+        if afar and not all(shape.bbox().valid() for shape in scene.shapes()):
+            raise ValueError(
+                "Mitsuba has made one mesh of several and lost its bounds, so that light of the sky or the sun would be wrong: "
+                "load the scene with optimize=False"
             )
 
     def _check_inside(self, scene: Any) -> None:

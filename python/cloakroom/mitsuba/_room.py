@@ -189,7 +189,8 @@ class Room:
                 _set(sampler, "sample_count", samples)
         resolver = mi.file_resolver()
         resolver.append(str(self.path.resolve().parent))
-        return mi.load_string(ElementTree.tostring(self.root, encoding="unicode"), **(values or {}))
+        # As they are: meshes that Mitsuba makes one of have no bounds, and light from afar is too little then.
+        return mi.load_string(ElementTree.tostring(self.root, encoding="unicode"), optimize=False, **(values or {}))
 
     def _shape(self, name: str) -> Any:
         asked = _clean(name)
