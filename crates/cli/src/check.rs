@@ -157,6 +157,20 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
             percent(past)
         )?;
     }
+    if prepared.coherence.is_some() {
+        let names: Vec<String> =
+            prepared.interfering().map(|number| scene.device_name(number).to_string()).collect();
+        let because = match &names[..] {
+            [] => "light.bandwidth_nm is written".to_owned(),
+            names => format!("of {} (a polarizer, thin, or hardly birefringent)", names.join(", ")),
+        };
+        writeln!(
+            text,
+            "light        interferes, because {because}: each ray is followed down to {:e} of its power, and none is \
+             interpolated, which takes far longer; trace.min_power says how far",
+            prepared.limits.min_power
+        )?;
+    }
     let Estimate { seconds, walks, samples, .. } = estimate(prepared);
     let (walks, samples) = (1e-6 * walks, 1e-6 * samples as f64);
     let (of, rest) = if walks > samples {

@@ -91,16 +91,19 @@ fn merged(
     // The strips are there beside the picture for a moment.
     let [width, height] = prepared.scene.camera.resolution;
     render::check_memory(prepared, wanted, Tile { left: 0, top: 0, width, height })?;
-    let (mut parts, mut stats) = (Vec::new(), TraceStats::default());
+    let (mut parts, mut stats, mut most) = (Vec::new(), TraceStats::default(), 0.0);
     supervised(prepared.rows(), "rendering", |_, supervision| {
         for part in render::small_strips(prepared) {
-            let Rendered { picture, stats: of_part } = strips.strip(part, supervision)?;
+            let Rendered { picture, stats: of_part, most_pruned } =
+                strips.strip(part, supervision)?;
             stats += of_part;
+            most = f64::max(most, most_pruned);
             parts.push((part.to_string(), picture.metadata.clone(), picture));
         }
         Ok::<_, Failure>(())
     })?;
     warn_of_cut_branches(&stats);
+    warn_of_pruned_light(most);
     Ok(render::merge(&parts)?)
 }
 
@@ -123,7 +126,7 @@ fn check_tile(tile: Tile, scene: &Scene, formats: &[(&Path, PictureFormat)]) -> 
 
 /// Renders a large image strip by strip into its file; finished ones may be kept.
 fn in_strips(prepared: &PreparedScene<'_>, kept: Option<&Strips<'_>>, path: &Path) -> Result<()> {
-    let (mut stats, mut failure) = (TraceStats::default(), None);
+    let (mut stats, mut most, mut failure) = (TraceStats::default(), 0.0, None);
     let written = supervised(prepared.rows(), "rendering", |_, supervision| {
         let strip = |part| match kept {
             Some(strips) => strips.strip(part, supervision),
@@ -136,6 +139,7 @@ fn in_strips(prepared: &PreparedScene<'_>, kept: Option<&Strips<'_>>, path: &Pat
         let images = parts.into_iter().map(|part| {
             let image = strip(part).and_then(|strip| {
                 stats += strip.stats;
+                most = f64::max(most, strip.most_pruned);
                 Ok(output::to_srgb(&strip.picture)?)
             });
             image.map_err(|error| {
@@ -149,6 +153,7 @@ fn in_strips(prepared: &PreparedScene<'_>, kept: Option<&Strips<'_>>, path: &Pat
     failure.map_or(Ok(()), Err)?;
     written?;
     warn_of_cut_branches(&stats);
+    warn_of_pruned_light(most);
     Ok(())
 }
 
@@ -177,7 +182,22 @@ pub fn picture(prepared: &PreparedScene<'_>, wanted: ChannelSet, what: &str) -> 
 /// The picture, once it has been said what was rare in it.
 fn told(rendered: Rendered) -> Picture {
     warn_of_cut_branches(&rendered.stats);
+    warn_of_pruned_light(rendered.most_pruned);
     rendered.picture
+}
+
+/// Up to this share of a pixel's light in branches too weak to follow is not worth a word.
+const MUCH_PRUNED: f64 = 0.01;
+
+/// Says how much light was not followed, if it was much.
+fn warn_of_pruned_light(most: f64) {
+    if most > MUCH_PRUNED {
+        say(&format!(
+            "note: of the light of a pixel up to {:.0} % is in branches too weak to follow, and missing; a smaller trace.min_power \
+             follows them, and map = \"pruned\" shows where",
+            100.0 * most
+        ));
+    }
 }
 
 /// Says what was rare, if anything was.

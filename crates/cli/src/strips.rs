@@ -36,7 +36,7 @@ impl<'p> Strips<'p> {
         let file = self.file(part);
         if let Some(picture) = self.finished(&file, part) {
             (supervision.rows_done)(u64::from(part.height));
-            return Ok(Rendered { picture, stats: TraceStats::default() });
+            return Ok(Rendered { picture, stats: TraceStats::default(), most_pruned: 0.0 });
         }
         let strip = render::render_tile(self.prepared, self.wanted, part, supervision)?;
         output::write(&strip.picture, &file)?;

@@ -212,6 +212,37 @@ fn optional_channels_are_written_when_asked_for() {
 }
 
 #[test]
+fn what_is_not_followed_and_what_takes_far_longer_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("pane.toml");
+    let pane = |keys: &str| {
+        let body = "[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [5, 20, 20]\n";
+        let camera = "[camera]\nresolution = [32, 24]\nsamples = 1\n";
+        fs::write(&scene, format!("{camera}{body}{keys}")).unwrap();
+    };
+    let render = |min_power: &str| {
+        let mut command = cloakroom();
+        command.arg("render").arg(&scene).arg("-o").arg(folder.path().join("pane.png"));
+        let ran = command.args(["--set", min_power]).assert().success();
+        String::from_utf8(ran.get_output().stderr.clone()).unwrap()
+    };
+    pane("index = 1.5");
+    assert_eq!(render("trace.min_power=1e-6"), "");
+    // Each face reflects 4 %.
+    let told = render("trace.min_power=0.1");
+    assert!(told.contains("up to 8 % is in branches too weak to follow"), "{told}");
+    let checked = || String::from_utf8(stdout(cloakroom().arg("check").arg(&scene))).unwrap();
+    assert!(!checked().contains("interferes"));
+    pane("uniaxial = { ordinary = 1.5, extraordinary = 1.500001 }\n[trace]\nmin_power = 1e-3");
+    let text = checked();
+    assert!(text.contains("interferes, because of device 0 (a polarizer, thin"), "{text}");
+    pane("index = 1.5\n[light]\nbandwidth_nm = 20\n[trace]\nmin_power = 1e-3");
+    let text = checked();
+    assert!(text.contains("interferes, because light.bandwidth_nm is written"), "{text}");
+    assert!(text.contains("down to 1e-3 of its power"), "{text}");
+}
+
+#[test]
 fn scenes_are_checked() {
     let text = String::from_utf8(stdout(cloakroom().arg("check").arg(paper("8c")))).unwrap();
     for part in ["1024 x 768", "double-gaussian-cloak", "index_max", "estimate"] {

@@ -12,6 +12,9 @@ use toml::{Table, Value};
 /// Width and height of the pictures: six patches.
 const SIZE: [i64; 2] = [96, 64];
 
+/// Samples of each pixel.
+const SAMPLES: i64 = 4;
+
 /// How many pixels may differ, by one step of 8 bits: what lies between two steps.
 const ROUNDED: usize = 3;
 
@@ -21,8 +24,78 @@ const ROUNDED: usize = 3;
 ///
 /// If the picture differs from that of rays traced one by one.
 pub fn interpolate(draws: &mut Draws<'_>) -> u64 {
-    let samples = 4;
-    let scene = scene_seen(draws, SIZE, samples);
+    let scene = scene_seen(draws, SIZE, SAMPLES);
+    compare(draws, &scene)
+}
+
+/// Looks at bars behind a pane in one device, or at balls that only a mirror shows; how many rays that
+/// takes.
+///
+/// # Panics
+///
+/// If the picture differs from that of rays traced one by one.
+pub fn interpolate_small(draws: &mut Draws<'_>) -> u64 {
+    let text = if draws.chance(128) { bars(draws) } else { mirrored(draws) };
+    let scene = text.parse().expect("TOML");
+    compare(draws, &scene)
+}
+
+/// A pane with bars behind it, of metal or glass, along z or upright.
+fn bars(draws: &mut Draws<'_>) -> String {
+    let rectangle = |x: [f64; 2], y: [f64; 2]| {
+        format!(
+            "[[{}, {}], [{}, {}], [{}, {}], [{}, {}]]",
+            x[0], y[0], x[1], y[0], x[1], y[1], x[0], y[1]
+        )
+    };
+    let mut scene = camera();
+    let axis = *draws.pick(&["[0, 0, 1]", "[0, 1, 0]", "[0.1, 0.3, 1]"]);
+    scene += &format!("[[device]]\nkind = \"prisms\"\naxis = {axis}\nlength = 40\n");
+    let matter = *draws.pick(&[
+        "index = 1.5",
+        "uniaxial = { ordinary = 1.5, extraordinary = 1.7, optic_axis = [1, 1, 0] }",
+    ]);
+    let pane = rectangle([-10.0, -6.0], [-20.0, 20.0]);
+    scene += &format!("[[device.prism]]\ncorners = {pane}\n{matter}\n");
+    let width = 10f64.powf(draws.between(-1.0, 0.5));
+    let count = 2 + draws.below(5);
+    for number in 0..count {
+        let middle = -16.0 + 32.0 * (number as f64 + draws.between(0.2, 0.8)) / count as f64;
+        let corners = rectangle([5.0, 5.0 + width], [middle, middle + width]);
+        let matter = *draws.pick(&["metal = true", "index = 1.5"]);
+        scene += &format!("[[device.prism]]\ncorners = {corners}\n{matter}\n");
+    }
+    scene
+}
+
+/// Balls behind the camera, and a mirror behind glass before it.
+fn mirrored(draws: &mut Draws<'_>) -> String {
+    let mut scene = camera();
+    let rotation = draws.between(-10.0, 10.0);
+    for (x, matter) in [(0.0, "index = 1.5"), (2.5, "metal = true")] {
+        scene += &format!(
+            "[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [2, 60, 60]\nrotation = {rotation}\nposition = [{x}, 0, 0]\n{matter}\n"
+        );
+    }
+    for _ in 0..2 + draws.below(4) {
+        let radius = 10f64.powf(draws.between(-0.5, 0.8));
+        let (x, y, z) =
+            (draws.between(-160.0, -108.0), draws.between(-40.0, 40.0), draws.between(-40.0, 40.0));
+        scene += &format!(
+            "[[device]]\nkind = \"body\"\nshape = \"sphere\"\nradius = {radius}\nposition = [{x}, {y}, {z}]\nsurface = {{ color = [0.9, 0.1, 0.1] }}\n"
+        );
+    }
+    scene
+}
+
+fn camera() -> String {
+    let [width, height] = SIZE;
+    format!(
+        "[camera]\nresolution = [{width}, {height}]\nsamples = {SAMPLES}\nposition = [-100, 0, 0]\n[surroundings]\ncolor = [0.5, 0.5, 0.5]\n"
+    )
+}
+
+fn compare(draws: &mut Draws<'_>, scene: &Table) -> u64 {
     // Pictures differ within the tolerance: coarser ones would show.
     let tolerance = 10f64.powf(draws.between(-9.0, -6.0));
     let looked_at = |exact: bool| {
@@ -48,5 +121,5 @@ pub fn interpolate(draws: &mut Draws<'_>) -> u64 {
         differ += usize::from(most > 0);
     }
     assert!(differ <= ROUNDED, "{differ} pixels differ:\n{scene}");
-    (2 * samples * SIZE[0] * SIZE[1]).unsigned_abs()
+    (2 * SAMPLES * SIZE[0] * SIZE[1]).unsigned_abs()
 }

@@ -20,7 +20,7 @@ mod trials;
 pub use cuts::cut_glass;
 pub use draws::Draws;
 pub use flights::fly;
-pub use interpolation::interpolate;
+pub use interpolation::{interpolate, interpolate_small};
 pub use rays::{Fault, examine, launch, starts_in_air, timed};
 pub use scenes::{SoundScene, sound_scene};
 pub use stacks::stack;

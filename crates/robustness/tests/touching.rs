@@ -2,7 +2,9 @@
 //! devices, and light in flight through them.
 
 use crate::long::count;
-use robustness::{Draws, cut_glass, fly, interpolate, stack, touch, touching_kinds};
+use robustness::{
+    Draws, cut_glass, fly, interpolate, interpolate_small, stack, touch, touching_kinds,
+};
 
 #[test]
 fn light_never_goes_through_metal_that_touches_a_device() {
@@ -45,6 +47,9 @@ fn pictures_of_shared_rays_are_those_of_traced_ones() {
     let mut draws = Draws::Seed(20);
     for _ in 0..count(30, 600) {
         interpolate(&mut draws);
+    }
+    for _ in 0..count(6, 200) {
+        interpolate_small(&mut draws);
     }
 }
 

@@ -23,6 +23,9 @@ pub struct Estimate {
 /// How long the image of a scene is looked at.
 const LONGEST: Duration = Duration::from_secs(2);
 
+/// How long the samples of a part of a patch are, if there are more.
+const EACH: Duration = Duration::from_millis(40);
+
 /// Patches that are looked at, if there is time.
 const MOST_PATCHES: usize = 192;
 
@@ -66,11 +69,15 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
             let blocks = across.1 * down.1;
             let step = blocks.div_ceil(BLOCKS);
             // From the middle of the first step on: columns and rows are met evenly.
-            let taken = (step / 2..blocks).step_by(step);
-            let count = taken.len() as f64;
-            for block in taken {
+            let mut count = 0.0;
+            for block in (step / 2..blocks).step_by(step) {
                 let corner = [across.0 + block % across.1 * 2, down.0 + block / across.1 * 2];
                 exposer.expose_block(tracers, corner, 0, traced, &mut Default::default());
+                count += 1.0;
+                // Where rays take long, those of other patches say more.
+                if began.elapsed() >= EACH {
+                    break;
+                }
             }
             let took = began.elapsed().as_secs_f64();
             let scale = blocks as f64 / count * f64::from(camera.samples);

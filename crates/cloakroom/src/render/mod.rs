@@ -93,6 +93,8 @@ pub struct Rendered {
     pub picture: Picture,
     /// Rare events over all rays.
     pub stats: TraceStats,
+    /// The largest share of the light of a pixel that is in branches too weak to follow.
+    pub most_pruned: f64,
 }
 
 /// Renders a scene.
@@ -210,7 +212,7 @@ fn expose_film<const N: usize>(
     let mut bands = film.bands(BAND_ROWS as usize);
     // In no order, so that what is done says how long the rest will take.
     bands.sort_by_cached_key(|band| mix(band.corner[1] as u64));
-    let stats = bands
+    let (stats, most_pruned) = bands
         .into_par_iter()
         .map_init(
             || Exposer::new(prepared, [&detection, &colors]),
@@ -220,13 +222,13 @@ fn expose_film<const N: usize>(
                 Ok::<_, Stopped>(stats)
             },
         )
-        .try_reduce(TraceStats::default, |mut a, b| {
-            a += b;
-            Ok(a)
+        .try_reduce(Default::default, |(mut stats, most), (of_band, most_there)| {
+            stats += of_band;
+            Ok((stats, f64::max(most, most_there)))
         })?;
     let [width, height] = [width, height].map(|side| side as usize);
     let (channels, metadata) = (film.into_channels(), prepared.metadata());
-    Ok(Rendered { picture: Picture { width, height, channels, metadata }, stats })
+    Ok(Rendered { picture: Picture { width, height, channels, metadata }, stats, most_pruned })
 }
 
 /// Bytes of memory that a part of a picture takes.
@@ -314,20 +316,22 @@ impl<'a, const N: usize> Exposer<'a, N> {
         (Self { prepared, detection, colors, working, spectral, spectra, flight: None }, tracers)
     }
 
-    /// Exposes a band, patch by patch.
+    /// Exposes a band, patch by patch: what was rare, and the most of a pixel that was pruned.
     fn expose_band(
         &mut self,
         tracers: &mut [BlockTracer<'_, N>],
         band: &mut Band<'_>,
         stop: &AtomicBool,
-    ) -> Result<TraceStats, Stopped> {
-        let mut stats = TraceStats::default();
+    ) -> Result<(TraceStats, f64), Stopped> {
+        let (mut stats, mut most) = (TraceStats::default(), 0.0);
         let (corner, size) = (band.corner, [band.width, band.rows]);
         BlockTracer::for_blocks(tracers, corner, size, stop, |tracers, corner, traced| {
-            stats += self.expose_pixels(tracers, corner, traced, band, stop)?;
+            let (of_block, there) = self.expose_pixels(tracers, corner, traced, band, stop)?;
+            stats += of_block;
+            most = f64::max(most, there);
             Ok(())
         })?;
-        Ok(stats)
+        Ok((stats, most))
     }
 
     /// Takes the samples of the pixels of a block, in a patch of which so much is traced by each
@@ -372,8 +376,9 @@ impl<'a, const N: usize> Exposer<'a, N> {
         traced: &[f64],
         band: &mut Band<'_>,
         stop: &AtomicBool,
-    ) -> Result<TraceStats, Stopped> {
+    ) -> Result<(TraceStats, f64), Stopped> {
         let (block, samples, stats) = self.expose_samples(tracers, [left, top], traced, stop)?;
+        let mut most = 0.0;
         let Band { width, rows, corner: [first_column, first_row], .. } = *band;
         for (i, pixel) in block.pixels.iter().enumerate() {
             let column = (left + i % 2).checked_sub(first_column);
@@ -383,6 +388,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 && y < rows
             {
                 let numbers = block.numbers.as_ref().map_or(pixel, |numbers| &numbers[i]);
+                most = f64::max(most, numbers.pruned / samples);
                 band.set(y * width + x, |channel, part| match (channel, &self.spectra) {
                     (ChannelKind::Spectrum, Some(spectra)) => spectra[i][part] / samples,
                     _ if channel.is_color() => pixel.value(channel, part, samples),
@@ -390,7 +396,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 });
             }
         }
-        Ok(stats)
+        Ok((stats, most))
     }
 
     /// Traces one sample of each pixel of a block and adds what they see.

@@ -198,7 +198,13 @@ impl PixelWidth {
 /// and there by chance, and branches are pruned that would have to be followed for their fields.
 #[must_use]
 fn interferes(scene: &Scene, assembly: &Assembly) -> bool {
-    scene.light.bandwidth_nm.given || assembly.least_path_difference() <= coherence(scene).reach()
+    scene.light.bandwidth_nm.given || is_coherent(scene, assembly).any(|is_coherent| is_coherent)
+}
+
+/// Whether light that a device parts is still coherent where it meets again, of each device.
+fn is_coherent(scene: &Scene, assembly: &Assembly) -> impl Iterator<Item = bool> {
+    let reach = coherence(scene).reach();
+    assembly.devices().iter().map(move |device| device.least_path_difference() <= reach)
 }
 
 /// The limits of a picture whose leaves are added as fields, closer than those of the scene.
@@ -394,6 +400,14 @@ impl<'s> PreparedScene<'s> {
         };
         prepared.spectral = Spectral::of(&prepared)?.map(Arc::new);
         Ok(prepared)
+    }
+
+    /// Because of which devices the leaves of the picture are added as fields, by their numbers: polarizers
+    /// and devices that part light by less than it is coherent.
+    pub fn interfering(&self) -> impl Iterator<Item = usize> {
+        is_coherent(self.scene, &self.assembly)
+            .enumerate()
+            .filter_map(|(number, is_coherent)| is_coherent.then_some(number))
     }
 
     /// The same scene with the photograph averaged in another way.

@@ -8,12 +8,11 @@ pub(crate) use placed::DepartedSurface;
 pub use placed::Placed;
 pub use screen::Screen;
 
-use crate::device::{Region, Structure, SurfaceHit};
+use crate::device::{Region, SurfaceHit};
 use glam::DVec3;
 use interfaces::Interfaces;
 use optics::geometry::{Solid, TOUCHING, first_along};
 use optics::interface::FilmLayer;
-use optics::medium::Medium;
 
 /// The most devices a scene may have: they are numbered in 16 bits.
 pub const MOST_DEVICES: usize = u16::MAX as usize;
@@ -96,31 +95,6 @@ impl Assembly {
         const CM_PER_NM: f64 = 1e-7;
         let vacuum_wave_number = std::f64::consts::TAU / (wavelength_nm * CM_PER_NM);
         Self { vacuum_wave_number, ..self }
-    }
-
-    /// The least difference of the optical paths of two branches that one device makes, cm: there
-    /// and back in a homogeneous medium, or by its birefringence; 0 with a polarizer, which makes
-    /// light of it; infinite without.
-    #[must_use]
-    pub fn least_path_difference(&self) -> f64 {
-        let of = |device: &Placed| {
-            let Structure { regions, hull, .. } = &device.structure;
-            let thickness = hull.solids.iter().map(Solid::thickness).fold(f64::INFINITY, f64::min);
-            let media = regions.iter().filter_map(|region| match region {
-                Region::Homogeneous(region) => Some(&region.medium),
-                _ => None,
-            });
-            let difference = |medium: &Medium| {
-                let reflected = 2.0 * medium.mean_index().abs();
-                let birefringence = medium.birefringence();
-                let least =
-                    if birefringence > 0.0 { reflected.min(birefringence) } else { reflected };
-                least * thickness
-            };
-            let least = media.map(difference).fold(f64::INFINITY, f64::min);
-            if device.structure.polarizes() { 0.0 } else { least }
-        };
-        self.devices.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a medium, a metal or a film of a device takes power from light.

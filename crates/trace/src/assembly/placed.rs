@@ -82,11 +82,27 @@ impl Placed {
             .reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
     }
 
+    /// Whether something of it can stand behind something else of it: it is of several solids, or of
+    /// one that is a mesh with dents.
+    #[must_use]
+    pub fn has_parts(&self) -> bool {
+        match &self.structure.hull.solids[..] {
+            [Solid::Polyhedron { solid, .. }] => !solid.is_convex(),
+            solids => solids.len() > 1,
+        }
+    }
+
     /// How large the smallest part of it looks at least, from wherever it is seen but edge on, cm: the
-    /// middle one of the sides of a box around it. Infinite if it is nowhere.
+    /// middle one of the sides of a box around it, and of a mesh with dents the width of a triangle.
+    /// Infinite if it is nowhere.
     #[must_use]
     pub fn least_extent(&self) -> f64 {
         let extent = |solid: &Solid| {
+            if let Solid::Polyhedron { solid, .. } = solid
+                && !solid.is_convex()
+            {
+                return Some(solid.least_width());
+            }
             let [low, high] = solid.bounds()?;
             let mut sides = (high - low).to_array();
             sides.sort_by(f64::total_cmp);
@@ -113,6 +129,27 @@ impl Placed {
         let Structure { regions, hull, .. } = &self.structure;
         let thickness = hull.solids.iter().map(Solid::thickness).reduce(f64::min)?;
         (!regions.is_empty()).then_some(thickness)
+    }
+
+    /// The least difference of the optical paths of two branches that it makes, cm: there and back in a
+    /// homogeneous medium, or by its birefringence; 0 of a polarizer, which makes light of it;
+    /// infinite without.
+    #[must_use]
+    pub fn least_path_difference(&self) -> f64 {
+        let Structure { regions, hull, .. } = &self.structure;
+        let thickness = hull.solids.iter().map(Solid::thickness).fold(f64::INFINITY, f64::min);
+        let media = regions.iter().filter_map(|region| match region {
+            Region::Homogeneous(region) => Some(&region.medium),
+            _ => None,
+        });
+        let difference = |medium: &Medium| {
+            let reflected = 2.0 * medium.mean_index().abs();
+            let birefringence = medium.birefringence();
+            let least = if birefringence > 0.0 { reflected.min(birefringence) } else { reflected };
+            least * thickness
+        };
+        let least = media.map(difference).fold(f64::INFINITY, f64::min);
+        if self.structure.polarizes() { 0.0 } else { least }
     }
 
     /// Its films in the world's frame.

@@ -183,6 +183,11 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             return None;
         }
         let side = largest_side(prepared)?;
+        let grids = [MOST - 2, MOST - 1, MOST].map(Grid::new);
+        let nodes = grids[grid_of(Patch { corner: [0; 2], size: [side; 2] })].points.len();
+        if side * side * rays_per_pixel as usize <= (cost(rays_per_pixel) * nodes as f64) as usize {
+            return None;
+        }
         let Limits { min_power, tolerance } = prepared.limits;
         let limits = Limits { min_power: DEEPER * min_power, tolerance: CLOSER * tolerance };
         Some(Self {
@@ -190,7 +195,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             detection,
             scouts: FourTracers::new(&tracer.clone().within(limits).watched(Trail::default())),
             tracers: FourTracers::new(&tracer.clone().watched(LeftOut::default())),
-            grids: [MOST - 2, MOST - 1, MOST].map(Grid::new),
+            grids,
             instructions: Instructions::new(),
             functions: Functions::of(prepared, detection),
             graded,
@@ -230,8 +235,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let samples = width * height * self.rays_per_pixel as usize;
         let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
         let rays = 2 * self.grid(halves[0]).points.len();
-        let cost = COST[usize::from(self.rays_per_pixel > 1)];
-        (gain > cost * traced.max(LEAST_COST) * rays as f64).then_some(halves)
+        let cost = cost(self.rays_per_pixel) * traced.max(LEAST_COST);
+        (gain > cost * rays as f64).then_some(halves)
     }
 
     /// Traces the rays of a patch, of that level: 0, or one more than that of the patch of which it
@@ -566,6 +571,11 @@ impl TermsOfLevels {
     }
 }
 
+/// What a ray at a node costs in terms of a sample's.
+fn cost(rays_per_pixel: u32) -> f64 {
+    COST[usize::from(rays_per_pixel > 1)]
+}
+
 /// Which of the grids is that of a patch.
 fn grid_of(patch: Patch) -> usize {
     let [width, height] = patch.size;
@@ -573,17 +583,24 @@ fn grid_of(patch: Patch) -> usize {
     usize::from(side > SMALL / 2) + usize::from(side > SMALL)
 }
 
-/// How large patches may be, pixels: no larger than the smallest of several devices looks, so that
-/// none is stepped over by the nodes; `None` if there may be no patches.
+/// How large patches may be, pixels: no larger than the smallest of several devices or parts looks,
+/// straight or by way of another device, so that none is stepped over by the nodes; `None` if there
+/// may be no patches. A single device of one part is seen by all rays themselves.
 fn largest_side(prepared: &PreparedScene<'_>) -> Option<usize> {
     let devices = prepared.assembly.devices();
     let from = prepared.scene.camera.position;
+    let middle = |device: &Placed| device.pose.to_world(DVec3::ZERO);
     let pixels = |device: &Placed| {
-        let distance = from.distance(device.pose.to_world(DVec3::ZERO));
+        let at = middle(device);
+        let by_way_of = |other: &Placed| from.distance(middle(other)) + middle(other).distance(at);
+        // Itself among the others: the straight way.
+        let distance = devices.iter().map(by_way_of).fold(0.0, f64::max);
         device.least_extent() / prepared.pixel.width_at(distance)
     };
-    let smallest = devices.iter().map(pixels).fold(f64::INFINITY, f64::min);
-    let smallest = if devices.len() > 1 { smallest } else { f64::INFINITY };
+    let smallest = match devices {
+        [single] if !single.has_parts() => f64::INFINITY,
+        _ => devices.iter().map(pixels).fold(f64::INFINITY, f64::min),
+    };
     let sides = std::iter::successors(Some(SIDE), |side| Some(side / 2));
     sides.take_while(|side| *side >= LEAST_SIDE).find(|side| *side as f64 <= smallest)
 }

@@ -315,6 +315,16 @@ impl Polyhedron {
         normals.map(|n| self.support(*n) + self.support(-*n)).fold(f64::INFINITY, f64::min)
     }
 
+    /// The least width of its triangles, cm: what stands out of one that is not convex is no narrower.
+    #[must_use]
+    pub fn least_width(&self) -> f64 {
+        let width = |[a, b, c]: [DVec3; 3]| {
+            let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+            (b - a).cross(c - a).length() / longest
+        };
+        self.pieces().map(width).fold(f64::INFINITY, f64::min)
+    }
+
     /// What it is cut along the plane z = 0: lines, joined nowhere.
     pub fn section(&self) -> Vec<[DVec2; 2]> {
         // Corners in the plane count as above it, unless all are.
