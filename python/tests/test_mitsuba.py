@@ -641,6 +641,11 @@ def test_devices_that_nobody_would_see_are_refused() -> None:
     for parts in ({"cloak": masked}, {"group": group, "one": {"type": "instance", "of": {"type": "ref", "id": "group"}}}):
         with pytest.raises(ValueError, match="put its bounding shape into the scene itself"):
             picture(box(**parts))
+    # An integrator that has seen a scene without devices looks again.
+    integrator = mi.load_dict({"type": "cloakroom_path"})
+    integrator.render(mi.load_dict(box()), spp=1)
+    with pytest.raises(ValueError, match="put its bounding shape into the scene itself"):
+        integrator.render(mi.load_dict(box(cloak=masked)), spp=1)
     lamp = {"type": "point", "position": THERE, "intensity": {"type": "rgb", "value": 1.0}}
     with pytest.raises(ValueError, match="a lamp stands in the bounding shape 'cloak'"):
         picture(box(cloak=made, lamp=lamp))

@@ -151,7 +151,7 @@ class _Room:
             numbers[_place(shape)] = number
             self.clear.append(bsdf.see_through == "yes" or bsdf.see_through == "auto" and (has_points or _is_clear(bsdf)))
         self.check_bounds()
-        self._check_all_found(scene)
+        self.check_all_found(scene)
         if self.shapes:
             self._check_merged(scene)
             table = np.zeros(max(numbers) + 1, dtype=np.uint32)
@@ -174,7 +174,7 @@ class _Room:
                     f"{middle - reach} to {middle + reach}; cloakroom.mitsuba.device() makes a shape that does"
                 )
 
-    def _check_all_found(self, scene: Any) -> None:
+    def check_all_found(self, scene: Any) -> None:
         """Refuses devices that are not on shapes of the scene themselves, where nobody would see them."""
         marks = [name for name in mi.traverse(scene).keys() if name.split(".")[-1] == MARK]
         if len(marks) > len({id(shape.bsdf()) for shape in self.shapes}):
@@ -432,12 +432,11 @@ def _integrator() -> Callable[[Any], Any]:
 
         def _devices(self, scene: Any) -> _Room:
             shapes = _bounding(scene)
-            if self._room is None or len(shapes) != len(self._room.shapes) or any(
-                one is not other for one, other in zip(shapes, self._room.shapes)
-            ):
+            if self._room is None or shapes != self._room.shapes:
                 self._room = _Room(scene)
             else:
                 self._room.check_bounds()
+                self._room.check_all_found(scene)
             return self._room
 
         def render(
