@@ -46,7 +46,7 @@ mkdir -p "$out"
 cp crates/viewer/page/* "$out"
 cp web/line.js web/worker.js "$out"
 chmod -R u+w,a+r "$out"
-# Comments, indents, spaces and lines are for who reads the source: a tenth of what is loaded of it.
+# Comments, indents, spaces and lines are for who reads the source: an eighth of what is loaded of it.
 sed -i '/^ *\/\/ /d; /^ *\/\*.*\*\/$/d; /^ *\/\*\*$/,/\*\/$/d; s/^ *//; /^$/d' "$out"/*.js "$out"/*.css
 sed -i 's/ *{ */{/g; s/; *}/}/g; s/: \([^:]\)/:\1/g; s/; /;/g' "$out"/*.css
 sed -i 's/ => /=>/g; s/ === /===/g; s/) {$/){/; s/^} else {$/}else{/; s/\(const\|let\) \([A-Za-z_$]*\) = /\1 \2=/' "$out"/*.js
