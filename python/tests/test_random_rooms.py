@@ -186,9 +186,7 @@ def test_bodies_are_those_of_mitsuba(seed: int, tmp_path: Path) -> None:
             for number, (keys, at, turn) in enumerate(placed)
         }
     else:
-        devices = []
-        for keys, at, turn in placed:
-            devices.append({**keys, "position": at, **as_keys(np.array(turn.matrix, float)[:3, :3])})
+        devices = [{**keys, "position": at, **as_keys(np.array(turn.matrix, float)[:3, :3])} for keys, at, turn in placed]
         (tmp_path / "bodies.toml").write_text(cloakroom.Scene(devices=devices).toml)
         scene = {"scene": str(tmp_path / "bodies.toml")}
         up = mi.ScalarTransform4f()

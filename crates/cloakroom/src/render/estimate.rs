@@ -23,7 +23,7 @@ pub struct Estimate {
 /// How long the image of a scene is looked at.
 const LONGEST: Duration = Duration::from_secs(2);
 
-/// How long the samples of a part of a patch are, if there are more.
+/// How long the samples of a part of a patch are looked at; one block is in any case.
 const EACH: Duration = Duration::from_millis(40);
 
 /// Patches that are looked at, if there is time.
@@ -68,8 +68,8 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
                 patch.part_of([0; 2], size).map(|range| (range.start, range.len().div_ceil(2)));
             let blocks = across.1 * down.1;
             let step = blocks.div_ceil(BLOCKS);
-            // From the middle of the first step on: columns and rows are met evenly.
             let mut count = 0.0;
+            // From the middle of the first step on: columns and rows are met evenly.
             for block in (step / 2..blocks).step_by(step) {
                 let corner = [across.0 + block % across.1 * 2, down.0 + block / across.1 * 2];
                 exposer.expose_block(tracers, corner, 0, traced, &mut Default::default());
