@@ -7,16 +7,17 @@ use cloakroom::assembly::Placed;
 use cloakroom::outline_mesh::{Matter, outlines};
 use cloakroom::render::Supervision;
 use cloakroom::trace::{
-    Launch, Limits, Placement, RayStatus, ScatterRay, Scattered, scatter_batches,
+    Launch, Limits, Placement, RayStatus, ScatterRay, Scattered, batches, scatter_batches,
 };
 use glam::{DMat3, DVec3};
-use ndarray::{Array2, ArrayView1, ArrayView2, ArrayView3, Axis};
+use ndarray::{Array2, Array3, ArrayView1, ArrayView2, ArrayView3, Axis};
 use num_complex::Complex;
 use numpy::{Element, IntoPyArray, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use optics::geometry::{Pose, REACH, Solid};
 use optics::wave::{ComplexVector, transverse_basis, unit};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::ops::Range;
 
 /// So many rays take less time than threads.
 const FEW: usize = 64;
@@ -57,12 +58,9 @@ struct Rays<'a, T> {
 
 impl<T: Real> Rays<'_, T> {
     fn ray(&self, number: usize) -> ScatterRay {
-        let row = |array: &ArrayView2<'_, T>| {
-            DVec3::from_array(std::array::from_fn(|axis| array[[number, axis]].get()))
-        };
-        let origin = row(&self.origins);
+        let origin = vector(&self.origins, number);
         // What is no direction is refused later.
-        let direction = unit(row(&self.directions)).unwrap_or_default();
+        let direction = unit(vector(&self.directions, number)).unwrap_or_default();
         let electric = match &self.fields {
             Some(fields) => std::array::from_fn(|i| {
                 let part = |part: fn(&Complex<f64>) -> f64| {
@@ -77,6 +75,15 @@ impl<T: Real> Rays<'_, T> {
         };
         let draw = self.draws.as_ref().map(|draws| draws[number].get());
         ScatterRay { launch: Launch { origin, direction, electric }, draw }
+    }
+}
+
+/// A row of three numbers.
+fn vector<T: Real>(array: &ArrayView2<'_, T>, number: usize) -> DVec3 {
+    let row = array.row(number);
+    match row.to_slice() {
+        Some(&[x, y, z]) => DVec3::new(x.get(), y.get(), z.get()),
+        _ => DVec3::from_array(std::array::from_fn(|axis| row[axis].get())),
     }
 }
 
@@ -141,30 +148,47 @@ impl<'py> Work<'_, 'py> {
         let Self { py, scene, limits, placement, want_fields } = self;
         let count = rays.origins.len_of(Axis(0));
         let every = rays.draws.is_none();
-        let traced = |supervision: &Supervision<'_>| -> Result<Vec<Columns<T>>, Failure> {
+        let traced = |supervision: &Supervision<'_>| -> Result<Columns<T>, Failure> {
             let (done, stop) = (supervision.rows_done, supervision.stop);
             let ray = |number: usize| rays.ray(number);
-            let kept = |rows: Vec<Scattered>| Columns::of(&rows, every, *want_fields);
             let assembly = scene.assembly()?;
-            Ok(scatter_batches(assembly, *limits, placement, count, &ray, &kept, done, stop)?)
+            if every {
+                let keep = |part: &mut Vec<Scattered>, rows: Vec<Scattered>| *part = rows;
+                let parts = batches(count).into_iter().map(|rays| (rays, Vec::new())).collect();
+                let parts =
+                    scatter_batches(assembly, *limits, placement, parts, &ray, &keep, done, stop)?;
+                let mut columns =
+                    Columns::new(parts.iter().map(Vec::len).sum(), true, *want_fields);
+                let mut rows = columns.rows();
+                parts.into_iter().for_each(|part| rows.take(part.len()).fill(&part));
+                return Ok(columns);
+            }
+            // Each ray has a row, so its place is known.
+            let mut columns = Columns::new(count, false, *want_fields);
+            let mut rows = columns.rows();
+            let keep = |part: &mut Rows<'_, T>, rows: Vec<Scattered>| part.fill(&rows);
+            let part = |rays: Range<usize>| (rays.clone(), rows.take(rays.len()));
+            let parts = batches(count).into_iter().map(part).collect();
+            scatter_batches(assembly, *limits, placement, parts, &ray, &keep, done, stop)?;
+            Ok(columns)
         };
-        let batches = if count <= FEW && scene.is_built() {
+        let columns = if count <= FEW && scene.is_built() {
             at_once(*py, traced)?
         } else {
             supervised(*py, None, |_, supervision| traced(supervision))?
         };
-        arrays(*py, &batches, every, *want_fields)
+        columns.into_arrays(*py, every, *want_fields)
     }
 }
 
-/// The rows of a batch, by columns, of which there are fewer bytes.
+/// The arrays of what became of rays.
 struct Columns<T> {
     /// The numbers of the rays, unless each has one row.
     ray: Vec<u32>,
     status: Vec<u8>,
     straight: Vec<bool>,
-    position: Vec<T>,
-    direction: Vec<T>,
+    position: Vec<[T; 3]>,
+    direction: Vec<[T; 3]>,
     weight: Vec<T>,
     probability: Vec<T>,
     transmitted: Vec<T>,
@@ -172,98 +196,148 @@ struct Columns<T> {
     optical_path: Vec<T>,
     path: Vec<u64>,
     body: Vec<i32>,
-    /// The components of the fields, if they are wanted.
-    fields: Vec<Complex<f64>>,
+    /// The fields, if they are wanted.
+    electric_field: Vec<[[Complex<f64>; 3]; 2]>,
 }
 
 impl<T: Real> Columns<T> {
-    fn of(rows: &[Scattered], every: bool, want_fields: bool) -> Self {
-        fn room<C>(count: usize) -> Vec<C> {
-            Vec::with_capacity(count)
+    /// Zeros, which cost nothing before they are written.
+    fn new(rows: usize, every: bool, want_fields: bool) -> Self {
+        let numbers = || vec![T::of(0.0); rows];
+        let vectors = || vec![[T::of(0.0); 3]; rows];
+        let fields = if want_fields { rows } else { 0 };
+        Self {
+            ray: vec![0; if every { rows } else { 0 }],
+            status: vec![0; rows],
+            straight: vec![false; rows],
+            position: vectors(),
+            direction: vectors(),
+            weight: numbers(),
+            probability: numbers(),
+            transmitted: numbers(),
+            pruned: numbers(),
+            optical_path: numbers(),
+            path: vec![0; rows],
+            body: vec![0; rows],
+            electric_field: vec![Default::default(); fields],
         }
-        let count = rows.len();
-        let mut columns = Self {
-            ray: room(if every { count } else { 0 }),
-            status: room(count),
-            straight: room(count),
-            position: room(3 * count),
-            direction: room(3 * count),
-            weight: room(count),
-            probability: room(count),
-            transmitted: room(count),
-            pruned: room(count),
-            optical_path: room(count),
-            path: room(count),
-            body: room(count),
-            fields: room(if want_fields { 6 * count } else { 0 }),
-        };
-        // Row by row: a row is longer than a line of the processor's memory.
-        for row in rows {
-            columns.push(row, every, want_fields);
-        }
-        columns
     }
 
-    #[inline]
-    fn push(&mut self, row: &Scattered, every: bool, want_fields: bool) {
+    fn rows(&mut self) -> Rows<'_, T> {
+        Rows {
+            ray: &mut self.ray,
+            status: &mut self.status,
+            straight: &mut self.straight,
+            position: &mut self.position,
+            direction: &mut self.direction,
+            weight: &mut self.weight,
+            probability: &mut self.probability,
+            transmitted: &mut self.transmitted,
+            pruned: &mut self.pruned,
+            optical_path: &mut self.optical_path,
+            path: &mut self.path,
+            body: &mut self.body,
+            electric_field: &mut self.electric_field,
+        }
+    }
+
+    fn into_arrays(
+        self,
+        py: Python<'_>,
+        every: bool,
+        want_fields: bool,
+    ) -> Result<Bound<'_, PyDict>, Failure> {
+        let (rows, arrays) = (self.status.len(), PyDict::new(py));
+        let numbers = |name: &str, of: Vec<T>| arrays.set_item(name, of.into_pyarray(py));
+        let vectors = |name: &str, of: Vec<[T; 3]>| -> Result<(), Failure> {
+            let of = Array2::from_shape_vec((rows, 3), of.into_flattened())?;
+            Ok(arrays.set_item(name, of.into_pyarray(py))?)
+        };
         if every {
-            self.ray.push(row.ray);
+            arrays.set_item("ray", self.ray.into_pyarray(py))?;
         }
-        self.status.push(row.status as u8);
-        self.straight.push(row.straight);
-        self.position.extend_from_slice(&row.position.to_array().map(T::of));
-        self.direction.extend_from_slice(&row.direction.to_array().map(T::of));
-        self.weight.push(T::of(row.weight));
-        self.probability.push(T::of(row.probability));
-        self.transmitted.push(T::of(row.transmitted));
-        self.pruned.push(T::of(row.pruned));
-        self.optical_path.push(T::of(row.optical_path));
-        self.path.push(row.path);
-        self.body.push(if row.status == RayStatus::Ended { i32::from(row.body) } else { -1 });
+        arrays.set_item("status", self.status.into_pyarray(py))?;
+        arrays.set_item("straight", self.straight.into_pyarray(py))?;
+        vectors("position", self.position)?;
+        vectors("direction", self.direction)?;
+        numbers("weight", self.weight)?;
+        numbers("probability", self.probability)?;
+        numbers("transmitted", self.transmitted)?;
+        numbers("pruned", self.pruned)?;
+        numbers("optical_path", self.optical_path)?;
+        arrays.set_item("path", self.path.into_pyarray(py))?;
+        arrays.set_item("body", self.body.into_pyarray(py))?;
         if want_fields {
-            self.fields.extend(row.electric.iter().flat_map(|field| field.components()));
+            let flat = self.electric_field.into_flattened().into_flattened();
+            let fields = Array3::from_shape_vec((rows, 2, 3), flat)?;
+            arrays.set_item("electric_field", fields.into_pyarray(py))?;
         }
+        Ok(arrays)
     }
 }
 
-fn arrays<'py, T: Real>(
-    py: Python<'py>,
-    batches: &[Columns<T>],
-    every: bool,
-    want_fields: bool,
-) -> Result<Bound<'py, PyDict>, Failure> {
-    fn whole<T, C: Clone>(batches: &[Columns<T>], of: fn(&Columns<T>) -> &[C]) -> Vec<C> {
-        batches.iter().map(of).collect::<Vec<_>>().concat()
+/// Successive rows of [`Columns`].
+struct Rows<'a, T> {
+    ray: &'a mut [u32],
+    status: &'a mut [u8],
+    straight: &'a mut [bool],
+    position: &'a mut [[T; 3]],
+    direction: &'a mut [[T; 3]],
+    weight: &'a mut [T],
+    probability: &'a mut [T],
+    transmitted: &'a mut [T],
+    pruned: &'a mut [T],
+    optical_path: &'a mut [T],
+    path: &'a mut [u64],
+    body: &'a mut [i32],
+    electric_field: &'a mut [[[Complex<f64>; 3]; 2]],
+}
+
+impl<'a, T: Real> Rows<'a, T> {
+    /// Takes off the first of them; of columns that are left out, none.
+    fn take(&mut self, rows: usize) -> Self {
+        fn first<'a, C>(column: &mut &'a mut [C], rows: usize) -> &'a mut [C] {
+            column.split_off_mut(..rows.min(column.len())).unwrap_or_default()
+        }
+        Self {
+            ray: first(&mut self.ray, rows),
+            status: first(&mut self.status, rows),
+            straight: first(&mut self.straight, rows),
+            position: first(&mut self.position, rows),
+            direction: first(&mut self.direction, rows),
+            weight: first(&mut self.weight, rows),
+            probability: first(&mut self.probability, rows),
+            transmitted: first(&mut self.transmitted, rows),
+            pruned: first(&mut self.pruned, rows),
+            optical_path: first(&mut self.optical_path, rows),
+            path: first(&mut self.path, rows),
+            body: first(&mut self.body, rows),
+            electric_field: first(&mut self.electric_field, rows),
+        }
     }
-    let arrays = PyDict::new(py);
-    let numbers = |name: &str, of: fn(&Columns<T>) -> &[T]| {
-        arrays.set_item(name, whole(batches, of).into_pyarray(py))
-    };
-    let vectors = |name: &str, of: fn(&Columns<T>) -> &[T]| -> Result<(), Failure> {
-        let flat = whole(batches, of);
-        let rows = Array2::from_shape_vec((flat.len() / 3, 3), flat)?;
-        Ok(arrays.set_item(name, rows.into_pyarray(py))?)
-    };
-    if every {
-        arrays.set_item("ray", whole(batches, |rows| &rows.ray).into_pyarray(py))?;
+
+    fn fill(&mut self, rows: &[Scattered]) {
+        // Row by row: a row is longer than a line of the processor's memory.
+        for (i, row) in rows.iter().enumerate() {
+            if let Some(ray) = self.ray.get_mut(i) {
+                *ray = row.ray;
+            }
+            self.status[i] = row.status as u8;
+            self.straight[i] = row.straight;
+            self.position[i] = row.position.to_array().map(T::of);
+            self.direction[i] = row.direction.to_array().map(T::of);
+            self.weight[i] = T::of(row.weight);
+            self.probability[i] = T::of(row.probability);
+            self.transmitted[i] = T::of(row.transmitted);
+            self.pruned[i] = T::of(row.pruned);
+            self.optical_path[i] = T::of(row.optical_path);
+            self.path[i] = row.path;
+            self.body[i] = if row.status == RayStatus::Ended { i32::from(row.body) } else { -1 };
+            if let Some(fields) = self.electric_field.get_mut(i) {
+                *fields = row.electric.map(|field| field.components());
+            }
+        }
     }
-    arrays.set_item("status", whole(batches, |rows| &rows.status).into_pyarray(py))?;
-    arrays.set_item("straight", whole(batches, |rows| &rows.straight).into_pyarray(py))?;
-    vectors("position", |rows| &rows.position)?;
-    vectors("direction", |rows| &rows.direction)?;
-    numbers("weight", |rows| &rows.weight)?;
-    numbers("probability", |rows| &rows.probability)?;
-    numbers("transmitted", |rows| &rows.transmitted)?;
-    numbers("pruned", |rows| &rows.pruned)?;
-    numbers("optical_path", |rows| &rows.optical_path)?;
-    arrays.set_item("path", whole(batches, |rows| &rows.path).into_pyarray(py))?;
-    arrays.set_item("body", whole(batches, |rows| &rows.body).into_pyarray(py))?;
-    if want_fields {
-        let fields = whole(batches, |rows| &rows.fields);
-        let fields = ndarray::Array3::from_shape_vec((fields.len() / 6, 2, 3), fields)?;
-        arrays.set_item("electric_field", fields.into_pyarray(py))?;
-    }
-    Ok(arrays)
 }
 
 /// The axes and the origin of a frame (3, 4), the least and the greatest coordinates in it, and whether it

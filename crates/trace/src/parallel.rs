@@ -5,15 +5,23 @@ use rayon::prelude::*;
 
 /// `work` of each number below `count`, in order.
 pub(crate) fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-    if count < 2 {
+    map_each((0..count).collect(), work)
+}
+
+/// `work` of each item, in order.
+pub(crate) fn map_each<I: Send, T: Send>(
+    items: Vec<I>,
+    work: impl Fn(I) -> T + Send + Sync,
+) -> Vec<T> {
+    if items.len() < 2 {
         // Other threads would take longer to be told of it.
-        return (0..count).map(work).collect();
+        return items.into_iter().map(work).collect();
     }
     #[cfg(feature = "rayon")]
-    let numbers = (0..count).into_par_iter();
+    let items = items.into_par_iter();
     #[cfg(not(feature = "rayon"))]
-    let numbers = 0..count;
-    numbers.map(work).collect()
+    let items = items.into_iter();
+    items.map(work).collect()
 }
 
 /// How many threads there are.

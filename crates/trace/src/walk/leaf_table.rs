@@ -17,9 +17,10 @@ const BATCH: [usize; 2] = [64, 4096];
 /// Batches a thread, so that all end at about the same time.
 const BATCHES: usize = 16;
 
-/// How many of `count` rays one thread takes at a time.
-pub(super) fn batch_size(count: usize) -> usize {
-    (count / (BATCHES * crate::parallel::threads())).clamp(BATCH[0], BATCH[1])
+/// Which of `count` rays one thread takes at a time.
+pub fn batches(count: usize) -> Vec<Range<usize>> {
+    let size = (count / (BATCHES * crate::parallel::threads())).clamp(BATCH[0], BATCH[1]);
+    (0..count).step_by(size).map(|first| first..count.min(first + size)).collect()
 }
 
 /// Work was stopped from outside before it was done.
@@ -120,12 +121,10 @@ impl<const N: usize> LeafTable<N> {
         let settings = settings.into();
         let alone = settings.coherence.is_none() && settings.pick.is_none();
         let reach = settings.paths.filter(|_| alone);
-        let size = batch_size(count);
-        let batches = crate::parallel::map(count.div_ceil(size), |batch| {
+        let batches = crate::parallel::map_each(batches(count), |rays| {
             if stop.load(Ordering::Relaxed) {
                 return Err(E::from(Stopped));
             }
-            let rays = batch * size..count.min((batch + 1) * size);
             let table = match reach {
                 Some(reach) => Self::with_paths(assembly, &settings, reach, rays, launch)?,
                 None => Self::of_batch(assembly, &settings, rays, launch)?,

@@ -26,7 +26,7 @@ pub use coherence::{Coherence, Pair, Way};
 pub use first_face::FirstFace;
 pub use four::FourTracers;
 pub use leaf::{Leaf, LeafEnd, Outcome, TraceStats};
-pub use leaf_table::{LeafTable, RaySettings, Stopped};
+pub use leaf_table::{LeafTable, RaySettings, Stopped, batches};
 pub use paths::{Line, PathGatherer, PathTable, TreePath, lines};
 pub use recorder::{PathRecorder, PathSegment, PathTime};
 pub use scatter::{Placement, RayStatus, ScatterRay, Scattered, scatter, scatter_batches};

@@ -2,7 +2,7 @@
 //! its power.
 
 use super::draw::Drawn;
-use super::leaf_table::batch_size;
+use super::leaf_table::batches;
 use super::neighbours::side_by_side;
 use super::{FourTracers, Launch, Leaf, LeafEnd, Limits, Outcome, Stopped, Tracer};
 use crate::assembly::Assembly;
@@ -136,9 +136,10 @@ pub fn scatter(
     done: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
 ) -> Result<Vec<Scattered>, Stopped> {
-    let whole = |rows: Vec<Scattered>| rows;
+    let keep = |batch: &mut Vec<Scattered>, rows| *batch = rows;
+    let empty = batches(count).into_iter().map(|rays| (rays, Vec::new())).collect();
     let mut batches =
-        scatter_batches(assembly, limits, placement, count, ray, &whole, done, stop)?.into_iter();
+        scatter_batches(assembly, limits, placement, empty, ray, &keep, done, stop)?.into_iter();
     let mut all = batches.next().unwrap_or_default();
     for mut batch in batches {
         all.append(&mut batch);
@@ -146,35 +147,35 @@ pub fn scatter(
     Ok(all)
 }
 
-/// The same for callers that keep less of each row, or keep it otherwise: `kept` makes of the rows of each
-/// batch of rays, on the thread that has traced it, what of it is given, in order of the rays.
+/// The same for callers that keep less of each row, or keep it otherwise: the rays come in batches, as
+/// [`batches`] parts them, each with what `keep` fills from its rows, on the thread that has traced them;
+/// that is given, in order of the batches.
 ///
 /// # Errors
 ///
 /// If the work was stopped.
 #[expect(clippy::too_many_arguments, reason = "those of `scatter` and one more")]
-pub fn scatter_batches<R: Send>(
+pub fn scatter_batches<K: Send>(
     assembly: &Assembly,
     limits: Limits,
     placement: &Placement,
-    count: usize,
+    batches: Vec<(Range<usize>, K)>,
     ray: &(impl Fn(usize) -> ScatterRay + Sync),
-    kept: &(impl Fn(Vec<Scattered>) -> R + Sync),
+    keep: &(impl Fn(&mut K, Vec<Scattered>) + Sync),
     done: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
-) -> Result<Vec<R>, Stopped> {
-    let size = batch_size(count);
+) -> Result<Vec<K>, Stopped> {
     let four = assembly.is_graded();
-    crate::parallel::map(count.div_ceil(size), |batch| {
+    crate::parallel::map_each(batches, |(rays, mut kept)| {
         if stop.load(Ordering::Relaxed) {
             return Err(Stopped);
         }
-        let rays = batch * size..count.min((batch + 1) * size);
         let length = rays.len() as u64;
         let batch = Batch { assembly, limits, placement, rays: &rays };
         let scattered = if four { batch.by_fours(ray) } else { batch.one_by_one(ray) };
         done(length);
-        Ok(kept(scattered))
+        keep(&mut kept, scattered);
+        Ok(kept)
     })
     .into_iter()
     .collect()
