@@ -25,19 +25,27 @@ const ROUNDED: usize = 3;
 /// If the picture differs from that of rays traced one by one.
 pub fn interpolate(draws: &mut Draws<'_>) -> u64 {
     let scene = scene_seen(draws, SIZE, SAMPLES);
-    compare(draws, &scene)
+    compare(draws, &scene, Path::new("/nowhere"))
 }
 
-/// Looks at bars behind a pane in one device, or at balls that only a mirror shows; how many rays that
-/// takes.
+/// Looks at bars behind a pane in one device, at a comb, or at balls that only a mirror shows; how many rays
+/// that takes.
 ///
 /// # Panics
 ///
-/// If the picture differs from that of rays traced one by one.
+/// If the picture differs from that of rays traced one by one, or if a file cannot be written.
 pub fn interpolate_small(draws: &mut Draws<'_>) -> u64 {
-    let text = if draws.chance(128) { bars(draws) } else { mirrored(draws) };
+    let folder = tempfile::tempdir().expect("a folder");
+    let combs = draws.below(3) == 0;
+    let text = match combs {
+        true => combed(draws, folder.path()),
+        false if draws.chance(128) => bars(draws),
+        false => mirrored(draws),
+    };
     let scene = text.parse().expect("TOML");
-    compare(draws, &scene)
+    let rays = compare(draws, &scene, folder.path());
+    assert!(rays > 1 || !combs, "refused:\n{scene}");
+    rays
 }
 
 /// A pane with bars behind it, of metal or glass, along z or upright.
@@ -68,6 +76,66 @@ fn bars(draws: &mut Draws<'_>) -> String {
     scene
 }
 
+/// A comb of glass, seen from any side.
+fn combed(draws: &mut Draws<'_>, folder: &Path) -> String {
+    std::fs::write(folder.join("comb.obj"), comb(draws)).expect("a file");
+    let axis = draws.direction();
+    let (rotation, position) = (draws.tenths(-180.0, 180.0), draws.tenths(-20.0, 20.0));
+    let matter = *draws.pick(&[
+        "index = 1.5",
+        "uniaxial = { ordinary = 1.5, extraordinary = 1.7, optic_axis = [1, 1, 0] }",
+    ]);
+    format!(
+        "{}[[device]]\nkind = \"polyhedron\"\nmesh = \"comb.obj\"\naxis = [{}, {}, {}]\nrotation = {rotation}\nposition = [0, {position}, 0]\n{matter}\n",
+        camera(),
+        axis.x,
+        axis.y,
+        axis.z
+    )
+}
+
+/// A bar along y with teeth towards x, as the mesh of an OBJ file: a dented solid with small parts.
+fn comb(draws: &mut Draws<'_>) -> String {
+    let (back, tooth, height) =
+        (draws.between(2.0, 8.0), 10f64.powf(draws.between(-0.5, 1.0)), draws.between(1.0, 20.0));
+    // Where teeth and gaps begin, in turns; the last gap is none.
+    let mut steps = vec![-16.0];
+    for _ in 0..2 * (2 + draws.below(4)) - 1 {
+        let wide = 10f64.powf(draws.between(-0.5, 0.9));
+        steps.push(steps.last().copied().unwrap_or_default() + wide);
+    }
+    // Columns of corners along y: behind the back, before it, at the ends of the teeth; each below and above.
+    let columns = [0.0, back, back + tooth];
+    let mut text = String::new();
+    for (z, x) in [-height, height].iter().flat_map(|z| columns.map(|x| (*z, x))) {
+        text.extend(steps.iter().map(|y| format!("v {x} {y} {z}\n")));
+    }
+    let corner = |column: usize, step: usize| column * steps.len() + step;
+    // Rectangles of the outline, counter-clockwise as seen from above.
+    let cell = |column: usize, step: usize| {
+        [(column, step), (column + 1, step), (column + 1, step + 1), (column, step + 1)]
+            .map(|(column, step)| corner(column, step))
+    };
+    let backs = (0..steps.len() - 1).map(|step| cell(0, step));
+    let teeth = (0..steps.len() - 1).step_by(2).map(|step| cell(1, step));
+    let cells: Vec<[usize; 4]> = backs.chain(teeth).collect();
+    let sides = |[a, b, c, d]: [usize; 4]| [[a, b], [b, c], [c, d], [d, a]];
+    let all: Vec<[usize; 2]> = cells.iter().copied().flat_map(sides).collect();
+    let above = columns.len() * steps.len();
+    let mut face = |corners: [usize; 4]| {
+        let [a, b, c, d] = corners.map(|corner| corner + 1);
+        text += &format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+    };
+    for [a, b, c, d] in cells {
+        face([a, b, c, d].map(|corner| corner + above));
+        face([d, c, b, a]);
+    }
+    for [a, b] in all.iter().filter(|[a, b]| !all.contains(&[*b, *a])) {
+        face([*a, *b, b + above, a + above]);
+    }
+    text
+}
+
 /// Balls behind the camera, and a mirror behind glass before it.
 fn mirrored(draws: &mut Draws<'_>) -> String {
     let mut scene = camera();
@@ -95,7 +163,8 @@ fn camera() -> String {
     )
 }
 
-fn compare(draws: &mut Draws<'_>, scene: &Table) -> u64 {
+/// `folder` has the files that the scene names.
+fn compare(draws: &mut Draws<'_>, scene: &Table, folder: &Path) -> u64 {
     // Pictures differ within the tolerance: coarser ones would show.
     let tolerance = 10f64.powf(draws.between(-9.0, -6.0));
     let looked_at = |exact: bool| {
@@ -104,7 +173,7 @@ fn compare(draws: &mut Draws<'_>, scene: &Table) -> u64 {
         let trace = trace.map(|(key, value)| (key.to_owned(), value));
         scene.insert("trace".to_owned(), Value::Table(Table::from_iter(trace)));
         let text = scene.to_string();
-        let loaded = scene_file::parse(&text, "soak", Path::new("/nowhere"), &[]).ok()?;
+        let loaded = scene_file::parse(&text, "soak", folder, &[]).ok()?;
         let prepared = PreparedScene::new(&loaded.scene).ok()?;
         let stop = AtomicBool::new(false);
         let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
