@@ -190,6 +190,11 @@ test("links say what they show, and an embedded view has one control", async () 
   assert.equal(await page.inputValue("#rotation-number"), "30");
   assert.ok(await page.isChecked("#shows input[value=bare]"));
   assert.equal(await page.inputValue("#beside"), "mirror");
+  assert.ok(!(await page.locator("#toast").isVisible()));
+  // What is wrong in one is left out, and said.
+  await follow(page, "#sphere-cloak&rotation=left&split=half&moment=2&show=nothing&colour=red&polarizer=30");
+  assert.match(await page.textContent("#toast"), /says nothing here: rotation=left, split=half, moment=2, show=nothing, colour=red/);
+  assert.match(await says(page), /polarizer/);
   await page.setViewportSize({ width: 480, height: 520 });
   const embedded = await open("#sphere-cloak&embed=inner&lang=de");
   await embedded.page.setViewportSize({ width: 480, height: 560 });
@@ -212,6 +217,11 @@ test("links say what they show, and an embedded view has one control", async () 
 });
 
 test("all devices are a page of pictures, each opening live", async () => {
+  const german = await openPage(browser.context, server.address, "#gallery&lang=de");
+  await german.page.locator("#cards").waitFor();
+  assert.equal(await german.page.getAttribute("html", "lang"), "de");
+  assert.ok((await german.page.locator("#min-power option").allTextContents()).includes("0,1 %"));
+  await german.page.close();
   const { page, complaints } = await open();
   await page.click("#gallery");
   const cards = await page.locator(".cards a").count();
@@ -338,7 +348,7 @@ test("a German page says in German what is wrong, and of sentences that it does 
   ];
   const known = [/Radius ist -5 cm; erlaubt ist/, /Kappa ist 7; erlaubt ist/, /Gerät 1 \("left"\) und Gerät 0 überlappen sich; eines/, /denselben Vorrang/, /Die Kamera steht in Gerät 0/,
     /Gerät 0 .* ragt durch das Foto/, /kann keine öffnen/,
-    /erlaubt ist 0.005 bis 4.995 cm, das 0.001- bis 0.999-Fache von außen/, /kleiner als 0\.886 sein und ist 1\.497/, /Boden ist 5 cm; nötig ist die Breite des Geräts, 60 cm/, /Prisma 1 und Prisma 0 überlappen/, /sagt auf Englisch, warum: unknown key `colour`/];
+    /erlaubt ist 0,005 bis 4,995 cm, das 0,001- bis 0,999-Fache von außen/, /kleiner als 0,886 sein und ist 1,497/, /Boden ist 5 cm; nötig ist die Breite des Geräts, 60 cm/, /Prisma 1 und Prisma 0 überlappen/, /sagt auf Englisch, warum: unknown key `colour`/];
   const { page } = await open();
   await choose(page, "language", "de");
   for (const [i, scene] of scenes.entries()) {

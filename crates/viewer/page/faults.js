@@ -1,7 +1,7 @@
 // What the program says of mistakes. It speaks English: on a German page, the sentences to which the page's own controls lead are said in
 // German, and any other comes with a word that it is English.
 
-import { language, nameOfKey, say } from "./words.js";
+import { language, nameOfKey, number, say } from "./words.js";
 
 // `{key}` and `{by}` are names of keys, `{one}` and `{other}` devices; `{value}`, `{low}` and `{high}` numbers, maybe with a unit.
 const SENTENCES = [
@@ -14,7 +14,7 @@ const SENTENCES = [
   ["{key} is {value}; it must be at most {high}", "{key} ist {value}; erlaubt ist höchstens {high}"],
   ["{key} is {value}; it must be smaller than {high}", "{key} ist {value}; erlaubt ist, was kleiner als {high} ist"],
   ["{key} is {value}; it must be at least as wide as the device, {low}, or 0 for none", "{key} ist {value}; nötig ist die Breite des Geräts, {low}, oder 0 für keinen"],
-  ["a Gaussian map needs h/w < sqrt(pi)/2 = 0.886, not {value}", "h/w muss hier kleiner als 0.886 sein und ist {value}"],
+  ["a Gaussian map needs h/w < sqrt(pi)/2 = 0.886, not {value}", "h/w muss hier kleiner als 0,886 sein und ist {value}"],
   ["a grating needs 2 pi h/period < 1, not {value}", "2 pi h/Periode muss hier kleiner als 1 sein und ist {value}"],
   ["prism {value} overlaps prism {low} (counted from 0); cut one of them", "Prisma {value} und Prisma {low} überlappen sich (gezählt wird ab 0)"],
   ["{other} overlaps {one}; move one of them (devices are counted from 0)", "{other} und {one} überlappen sich; eines von beiden muss woandershin (gezählt wird ab 0)."],
@@ -45,6 +45,9 @@ const PATTERNS = SENTENCES.map(([english, german]) => {
   return [new RegExp(`^${escaped.replaceAll(/\{(\w+)\}/g, (_, name) => `(?<${name}>${FORMS[name] ?? ".+?"})`)}$`), german];
 });
 
+// Numbers without a power of ten, and what else is said as it is.
+const decimal = (words) => words.replace(/^-?\d+\.\d+(?![\d.e])/, (digits) => number(Number(digits), 6));
+
 const device = (words) => words.replace(/^device (\d+)/, "Gerät $1");
 
 function inGerman(message) {
@@ -52,7 +55,7 @@ function inGerman(message) {
     const found = pattern.exec(message);
     if (!found) continue;
     const put = { key: nameOfKey, by: nameOfKey, one: device, other: device };
-    return german.replaceAll(/\{(\w+)\}/g, (_, name) => (put[name] ?? String)(found.groups[name]));
+    return german.replaceAll(/\{(\w+)\}/g, (_, name) => (put[name] ?? decimal)(found.groups[name]));
   }
   return undefined;
 }

@@ -83,7 +83,9 @@ function greeted(content) {
 
 // Shows what the address says.
 function enter() {
-  if (location.hash === "#gallery") {
+  const asked = new URLSearchParams(location.hash.slice(1)).get("lang");
+  if (asked) setLanguage(asked, false);
+  if (/^#gallery(&|$)/.test(location.hash)) {
     if (!state.exhibit) state.open(hello.first ?? "opened", hello.scene);
     writePage();
     gallery.open(hello);
@@ -102,9 +104,10 @@ function enter() {
     delete state.scene.photograph;
     tell(say("copied.photograph"));
   }
+  if (linked && state.unread.length) tell(say("unread", { parts: state.unread.join(", ") }));
   if (named ? !linked : !state.exhibit) state.open(hello.first ?? "opened", hello.scene);
   if (state.embed !== before && document.body.dataset.pictures) return location.reload();
-  embed(new URLSearchParams(location.hash.slice(1)).get("lang"));
+  embed();
   $("banner").hidden = true;
   writePage();
   picture.mark(probing);
@@ -120,6 +123,7 @@ function enter() {
 function writePage() {
   writeAll();
   $("language").value = language;
+  for (const option of $("min-power").options) option.textContent = `${number(100 * option.value, 4)} %`;
   if (!hello) return;
   fillLists(hello);
   showControls();
@@ -131,8 +135,7 @@ function writePage() {
 }
 
 // A view for a page of another: the picture, its caption, and one control.
-function embed(asked) {
-  if (asked) setLanguage(asked, false);
+function embed() {
   if (!state.embed) return;
   const key = state.embed;
   document.body.dataset.embed = key;

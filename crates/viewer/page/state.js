@@ -17,6 +17,8 @@ export class State {
     this.moment = null;
     // The one key that an embedded view lets one change; none on the whole page.
     this.embed = null;
+    // The parts of the address that was read last that say nothing.
+    this.unread = [];
   }
 
   // The scene's devices.
@@ -85,15 +87,20 @@ export class State {
     } else if (!this.fromFragment(shown)) {
       return false;
     }
-    const rotation = Number(said.get("rotation") ?? NaN);
-    if (this.device && Number.isFinite(rotation)) this.device.rotation = rotation;
-    const polarizer = said.get("polarizer");
-    if (polarizer) this.set("camera", "polarizer", Number.isFinite(Number(polarizer)) ? Number(polarizer) : polarizer);
-    if (BESIDE.includes(said.get("split"))) this.beside = said.get("split");
-    const moment = Number(said.get("moment") ?? NaN);
-    if (moment >= 0 && moment <= 1) this.moment = moment;
-    const show = said.get("show");
-    for (const device of this.devices) if (show && hello.kinds[device.kind]?.shows.includes(show)) device.show = show;
+    // Takes a part of the address, if its value fits.
+    const take = (key, fits, put) => {
+      const value = said.get(key);
+      if (value !== null && fits(value)) said.delete(key), put(value);
+    };
+    const within = (low, high) => (value) => value && Number(value) >= low && Number(value) <= high;
+    take("rotation", (value) => this.device && within(-1e6, 1e6)(value), (value) => (this.device.rotation = Number(value)));
+    take("polarizer", Boolean, (value) => this.set("camera", "polarizer", Number.isFinite(Number(value)) ? Number(value) : value));
+    take("split", (value) => BESIDE.includes(value), (value) => (this.beside = value));
+    take("moment", within(0, 1), (value) => (this.moment = Number(value)));
+    const showing = (value) => this.devices.filter(({ kind }) => hello.kinds[kind]?.shows.includes(value));
+    take("show", (value) => showing(value).length, (value) => showing(value).forEach((device) => (device.show = value)));
+    ["embed", "lang"].forEach((key) => said.delete(key));
+    this.unread = Array.from(said, (part) => part.join("="));
     return true;
   }
 

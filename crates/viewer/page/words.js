@@ -128,6 +128,7 @@ const TABLE = {
   done: ["{w} × {h}, {n} samples a pixel", "{w} × {h}, {n} Strahlen je Bildpunkt"],
   finished: ["Finished: {n} samples a pixel", "Fertig: {n} Strahlen je Bildpunkt"],
   damaged: ["This link is damaged: it holds no scene. Here is the one that was opened.", "Dieser Link ist beschädigt: Er enthält keine Szene. Hier ist die, die geöffnet war."],
+  unread: ["Left out of this link, for it says nothing here: {parts}", "Was in diesem Link hier nichts sagt und fehlt: {parts}"],
   hangs: ["The photograph {name} hangs behind the device", "Das Foto {name} hängt hinter dem Gerät"],
   too_large: ["a photograph may have {n} MiB", "ein Foto darf {n} MiB haben"],
   copied: ["The link is copied: it shows this view on any machine that reaches this page.", "Der Link ist kopiert: Er zeigt diese Ansicht überall, wo man diese Seite erreicht."],
