@@ -122,7 +122,9 @@ test("the tour goes from nothing to the polarizer", async () => {
   assert.match(steps[4].caption, /horizontal polarizer/);
   assert.ok(difference(steps[0].pixels, steps[1].pixels).most > 50);
   assert.ok(difference(steps[0].pixels, steps[3].pixels).most > 50);
+  assert.equal(await page.textContent("#guide-polarizer"), "Take the polarizer away");
   await page.click("#guide-polarizer");
+  assert.equal(await page.textContent("#guide-polarizer"), "Put the polarizer back");
   await finished(page);
   assert.match(await says(page), /one polarization only/);
   assert.ok(difference(steps[4].pixels, await pixels(page)).most > 20);
@@ -206,6 +208,11 @@ test("links say what they show, and an embedded view has one control", async () 
   assert.match(embedded.page.url(), /&embed=inner$/);
   await finished(embedded.page);
   assert.deepEqual(await violations(embedded.page), []);
+  // Where there is little room, what is moved is in sight, and nothing is beside it.
+  await embedded.page.setViewportSize({ width: 300, height: 250 });
+  const slider = await embedded.page.locator("input[type=range]:visible").boundingBox();
+  assert.ok(slider.y + slider.height <= 250 && slider.x + slider.width <= 300);
+  assert.ok((await embedded.page.evaluate(() => document.documentElement.scrollWidth)) <= 300);
   // The language of a link is not remembered.
   assert.equal(await embedded.page.evaluate(() => localStorage.length), 0);
   const whole = await embedded.page.getAttribute("#whole-page a", "href");

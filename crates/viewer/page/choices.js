@@ -34,6 +34,7 @@ export function showState(state, hello, { changed, setShow }) {
   $("which").value = String(Math.min(state.which, state.devices.length - 1));
   const { polarizer = "none" } = state.scene.camera ?? {};
   $("polarizer").value = typeof polarizer === "number" ? "angle" : polarizer;
+  $("guide-polarizer").textContent = say(polarizer === "none" ? "tour.no_polarizer" : "tour.polarizer");
   $("angle-label").hidden = typeof polarizer !== "number";
   if (typeof polarizer === "number") $("angle").value = polarizer;
   $("bandwidth").value = state.scene.light?.bandwidth_nm ?? "";

@@ -560,7 +560,7 @@ watchTour(
     showControls();
   },
   () => {
-    state.set("camera", "polarizer", state.scene.camera?.polarizer === "horizontal" ? "none" : "horizontal");
+    state.set("camera", "polarizer", (state.scene.camera?.polarizer ?? "none") === "none" ? "horizontal" : "none");
     showControls();
     changed();
   },

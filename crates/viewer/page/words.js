@@ -389,9 +389,10 @@ const TABLE = {
     "Das Metall ist noch da, aber vier Stücke darum, die Tarnung, führen Licht daran vorbei und zurück auf seine Linie. Man sieht nichts davon: mit dem Teiler vergleichen."],
   "tour.4": ["Turned by 10° the cloak betrays itself: it makes the bar look as thin as a sheet of metal. Edge-on a sheet is invisible; tilted it is a mirror, in which the shelf appears again.",
     "Um 10° gedreht verrät sich die Tarnung: Sie lässt den Stab so dünn aussehen wie ein Blech. Von der Kante ist ein Blech unsichtbar; gekippt ist es ein Spiegel, in dem das Regal noch einmal erscheint."],
-  "tour.5": ["A simpler cloak works for one polarization only: half of the light is led around, the other half draws the false picture, which the polarizer takes away, but for some of it far from the middle, where light comes slanted. Take the polarizer away, and put it back.",
+  "tour.5": ["A simpler cloak works for one polarization only: half of the light is led around, the other half draws a false picture. The polarizer lets only the first half pass; far from the middle, where light comes slanted, a little of the false picture stays. Take it away, and put it back.",
     "Eine einfachere Tarnung wirkt nur für eine Polarisation: Die Hälfte des Lichts wird herumgeführt, die andere malt das falsche Bild. Der Polfilter nimmt es weg, bis auf einen Rest abseits der Mitte, wo das Licht schräg kommt. Den Polfilter wegnehmen und wieder davorsetzen."],
-  "tour.polarizer": ["Polarizer on or off", "Polfilter an oder aus"],
+  "tour.polarizer": ["Take the polarizer away", "Polfilter wegnehmen"],
+  "tour.no_polarizer": ["Put the polarizer back", "Polfilter davorsetzen"],
 
   // The glossary.
   "term.cloak": ["A shell that leads light around what it hides, and on as if nothing had been there.", "Eine Hülle, die Licht um das herumführt, was sie verbirgt, und weiter, als wäre nichts gewesen."],
