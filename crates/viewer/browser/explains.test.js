@@ -77,6 +77,7 @@ test("everything is said in English and German, from the browser's language or t
   await small(page, "1");
   assert.equal(await page.getAttribute("html", "lang"), "de");
   assert.match(await says(page), /Ein 11,5 cm hoher Metallstab steht vor der Person\..*um 10° gedreht/);
+  assert.equal(await page.locator("#keys select option:checked").first().textContent(), "impedanzangepasst");
   assert.deepEqual(await violations(page), []);
   const said = { en: [], de: [] };
   for (const language of ["en", "de"]) {

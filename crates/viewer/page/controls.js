@@ -1,6 +1,6 @@
 // The parameters of a device as sliders, built from the catalogue.
 
-import { nameOfKey as words, say } from "./words.js";
+import { nameOfKey as words, nameOfValue, say } from "./words.js";
 
 const keys = document.getElementById("keys");
 
@@ -47,7 +47,7 @@ function number(name, schema, value, set) {
 
 function choice(options, value, set) {
   const select = document.createElement("select");
-  for (const option of options) select.add(new Option(option === OWN ? say("written") : option, option));
+  for (const option of options) select.add(new Option(option === OWN ? say("written") : nameOfValue(option), option));
   select.value = value;
   select.addEventListener("change", () => set(select.value, false));
   return [select];

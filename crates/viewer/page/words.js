@@ -205,8 +205,40 @@ const TABLE = {
   "key.gradient": ["gradient", "Gefälle"],
   "key.scale": ["scale", "Maßstab"],
 
+  // Values of keys that are words.
+  "value.metal": ["metal", "Metall"],
+  "value.open": ["open", "offen"],
+  "value.none": ["none", "keine"],
+  "value.causal": ["causal", "kausal"],
+  "value.slab": ["slab", "Platte"],
+  "value.box": ["box", "Quader"],
+  "value.sphere": ["sphere", "Kugel"],
+  "value.ball": ["ball", "Kugel"],
+  "value.cylinder": ["cylinder", "Zylinder"],
+  "value.rectangle": ["rectangle", "Rechteck"],
+  "value.circle": ["circle", "Kreis"],
+  "value.graded": ["graded", "Gradientenindex"],
+  "value.regularized": ["regularized", "regularisiert"],
+  "value.impedance-matched": ["impedance-matched", "impedanzangepasst"],
+  "value.positive-uniaxial": ["positive-uniaxial", "positiv einachsig"],
+  "value.negative-uniaxial": ["negative-uniaxial", "negativ einachsig"],
+  "value.radial-uniaxial": ["radial-uniaxial", "einachsig, radial"],
+  "value.azimuthal-uniaxial": ["azimuthal-uniaxial", "einachsig, azimutal"],
+  "value.calcite": ["calcite", "Kalkspat"],
+  "value.quartz": ["quartz", "Quarz"],
+  "value.sapphire": ["sapphire", "Saphir"],
+  "value.magnesium-fluoride": ["magnesium-fluoride", "Magnesiumfluorid"],
+  "value.rutile": ["rutile", "Rutil"],
+  "value.lithium-niobate": ["lithium-niobate", "Lithiumniobat"],
+  "value.fused-silica": ["fused-silica", "Quarzglas"],
+  "value.water": ["water", "Wasser"],
+  "value.air": ["air", "Luft"],
+  "value.silver": ["silver", "Silber"],
+  "value.gold": ["gold", "Gold"],
+  "value.aluminium": ["aluminium", "Aluminium"],
+
   // Numbers.
-  "n.place": ["Light that arrives where it should", "Licht, das ankommt, wo es soll"],
+  "n.place": ["Light that arrives where an ideal device sends it", "Licht, das ankommt, wohin ein ideales Gerät es lenkt"],
   "n.bare": ["… with the bare metal instead", "… mit dem nackten Metall"],
   "n.late": ["Delay, on average", "Verspätung, im Mittel"],
   "n.delivered": ["From the photograph", "Vom Foto"],
@@ -446,6 +478,9 @@ export function nameOfKey(name) {
   const [, key, rest] = /^(\S+)(.*)$/.exec(name);
   return (has(`key.${key}`) ? say(`key.${key}`) : key.replaceAll("_", " ")) + rest;
 }
+
+// What a value is called that is a word.
+export const nameOfValue = (value) => (has(`value.${value}`) ? say(`value.${value}`) : value);
 
 // A number as people write it.
 export const number = (value, digits = 1) => value.toLocaleString(language, { maximumFractionDigits: digits, useGrouping: false });
