@@ -232,6 +232,7 @@ test("all devices are a page of pictures, each opening live", async () => {
   await german.page.close();
   const { page, complaints } = await open();
   await page.click("#gallery");
+  await page.locator(".cards a").first().waitFor();
   const cards = await page.locator(".cards a").count();
   assert.equal(cards, await page.locator("#exhibit option").count());
   await page.waitForFunction((n) => document.querySelectorAll(".cards canvas[data-made]").length === n, cards, { timeout: 240000 });
