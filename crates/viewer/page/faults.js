@@ -46,7 +46,7 @@ const PATTERNS = SENTENCES.map(([english, german]) => {
 });
 
 // Numbers without a power of ten, and what else is said as it is.
-const decimal = (words) => words.replace(/^-?\d+\.\d+(?![\d.e])/, (digits) => number(Number(digits), 6));
+const decimal = (words) => words.replace(/^-?\d+\.\d+(?![\d.e])/, (digits) => number(Number(Number(digits).toPrecision(6)), 20));
 
 const device = (words) => words.replace(/^device (\d+)/, "Gerät $1");
 
