@@ -7,7 +7,7 @@ use cloakroom::assembly::Placed;
 use cloakroom::outline_mesh::{Matter, outlines};
 use cloakroom::render::Supervision;
 use cloakroom::trace::{
-    Launch, Limits, Placement, RayStatus, ScatterRay, Scattered, batches, scatter_batches,
+    self, Launch, Limits, Placement, RayStatus, ScatterRay, Scattered, batches, scatter_batches,
 };
 use glam::{DMat3, DVec3};
 use ndarray::{Array2, Array3, ArrayView1, ArrayView2, ArrayView3, Axis};
@@ -153,14 +153,9 @@ impl<'py> Work<'_, 'py> {
             let ray = |number: usize| rays.ray(number);
             let assembly = scene.assembly()?;
             if every {
-                let keep = |part: &mut Vec<Scattered>, rows: Vec<Scattered>| *part = rows;
-                let parts = batches(count).into_iter().map(|rays| (rays, Vec::new())).collect();
-                let parts =
-                    scatter_batches(assembly, *limits, placement, parts, &ray, &keep, done, stop)?;
-                let mut columns =
-                    Columns::new(parts.iter().map(Vec::len).sum(), true, *want_fields);
-                let mut rows = columns.rows();
-                parts.into_iter().for_each(|part| rows.take(part.len()).fill(&part));
+                let rows = trace::scatter(assembly, *limits, placement, count, &ray, done, stop)?;
+                let mut columns = Columns::new(rows.len(), true, *want_fields);
+                columns.rows().fill(&rows);
                 return Ok(columns);
             }
             // Each ray has a row, so its place is known.
