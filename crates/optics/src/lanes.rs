@@ -74,6 +74,12 @@ impl<S: Simd> Lanes<S> {
         bytemuck::cast(self.values)
     }
 
+    /// Does `work` with the same instructions, in a function by itself: for what is done in many places of a large one.
+    #[inline(always)]
+    pub fn apart<W: WithSimd>(self, work: W) -> W::Output {
+        self.simd.vectorize(work)
+    }
+
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self { values: self.simd.sqrt_f64s(self.values), ..self }

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use num_complex::Complex64;
 use optics::geometry::Extent;
 use optics::propagation::{
-    Boundary, ConformalEnd, ConformalFlow, GridSpline, Half, IndexPerturbation,
+    Boundary, ConformalEnd, ConformalFlow, Degree, GridSpline, Half, IndexPerturbation,
 };
 use optics::transformation::{ConformalMap, FlatMap, Truncation};
 use std::f64::consts::TAU;
@@ -21,7 +21,7 @@ fn flow(square: impl Fn(DVec2) -> f64, steps: usize, extent: Extent, core: f64) 
     let place =
         |k: usize| -HALF + spacing * DVec2::new((k % count[0]) as f64, (k / count[0]) as f64);
     let samples: Vec<f64> = (0..count[0] * count[1]).map(|k| square(place(k))).collect();
-    let spline = GridSpline::new(-HALF, spacing, count, &samples).unwrap();
+    let spline = GridSpline::new(Degree::Three, -HALF, spacing, count, &samples).unwrap();
     let cut = Truncation { x_min: -HALF.x, x_max: HALF.x, y_max: HALF.y };
     let map = ConformalMap::Flat(FlatMap::new(-HALF.y, 4.0));
     let index_perturbation = IndexPerturbation::within(spline, |[_, high]| high > core).unwrap();
@@ -147,7 +147,9 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
     let samples: Vec<f64> = (0..25)
         .map(|k| oscillator(DVec2::new(f64::from(k % 5), f64::from(k / 5)) * 4.0 - 8.0))
         .collect();
-    let spline = GridSpline::new(DVec2::splat(-8.0), DVec2::splat(4.0), [5, 5], &samples).unwrap();
+    let spline =
+        GridSpline::new(Degree::Three, DVec2::splat(-8.0), DVec2::splat(4.0), [5, 5], &samples)
+            .unwrap();
     let map = ConformalMap::Flat(FlatMap::new(-12.0, 4.0));
     let disc = ConformalFlow::new(map, cut, Extent::ENDLESS, 1.0)
         .between(None, Some(rim))

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use optics::geometry::Extent;
 use optics::medium::ModeKind;
 use optics::propagation::{
-    ConformalEnd, ConformalFlow, GridSpline, Half, IndexPerturbation, OpticAxis, PathPoint,
+    ConformalEnd, ConformalFlow, Degree, GridSpline, Half, IndexPerturbation, OpticAxis, PathPoint,
     RadialFlow, TransformedShell, UniaxialCylinder,
 };
 use optics::transformation::{
@@ -132,7 +132,8 @@ fn conformal_flows(extent: Extent) -> [ConformalFlow; 6] {
         let samples: Vec<f64> = (0..31 * 21)
             .map(|k| square(from + spacing * DVec2::new(f64::from(k % 31), f64::from(k / 31))))
             .collect();
-        let spline = GridSpline::new(from, spacing, [31, 21], &samples).expect("a spline");
+        let spline =
+            GridSpline::new(Degree::Three, from, spacing, [31, 21], &samples).expect("a spline");
         IndexPerturbation::new(spline).expect("a positive index")
     };
     let bumpy = uneven(&|at| 1.0 + 0.1 * (0.4 * at.x).sin() * (0.3 * at.y).cos());

@@ -24,7 +24,7 @@ pub use space_spline::{Look, SpaceSpline};
 pub use spatial_flow::{
     Anisotropy, AxisField, Extraordinary, SpatialBorder, SpatialFlow, SpatialMedium, SpatialRay,
 };
-pub use spline::{GridSpline, GridSplineError};
+pub use spline::{Degree, GridSpline, GridSplineError};
 
 use glam::{DMat3, DVec3};
 

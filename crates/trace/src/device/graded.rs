@@ -16,7 +16,7 @@ use crate::key;
 use crate::keys::{KeyError, Sampled, Samples, ValueRange};
 use glam::DVec2;
 use optics::geometry::{Cap, Extent, Outline, Solid, Wall};
-use optics::propagation::{ConformalFlow, GridSpline, Half, IndexPerturbation};
+use optics::propagation::{ConformalFlow, Degree, GridSpline, Half, IndexPerturbation};
 use optics::transformation::{ConformalMap, FlatMap, Truncation};
 use std::f64::consts::PI;
 
@@ -234,7 +234,7 @@ fn square(plan: &Plan, samples: &Samples) -> Result<GridSpline, KeyError> {
     let [corner, spacing] = plan.grid([nx, ny]);
     // Along x side by side.
     let along_x = (0..ny).flat_map(|j| (0..nx).map(move |i| samples.values()[i * ny + j].powi(2)));
-    GridSpline::new(corner, spacing, [nx, ny], &along_x.collect::<Vec<_>>())
+    GridSpline::new(Degree::Three, corner, spacing, [nx, ny], &along_x.collect::<Vec<_>>())
         .map_err(|error| KeyError::at(key!(Graded.index), format!("index: {error}")))
 }
 

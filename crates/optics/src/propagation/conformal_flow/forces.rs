@@ -12,11 +12,12 @@
 //!
 //! dθ/dτ = (sign(p_z) Im(conj(P) γ) - σ Im(P f''/f'))/(1 + |σ|).
 
-use pulp::Simd;
+use num_complex::Complex64;
+use pulp::{Simd, WithSimd};
 
 use super::index_perturbation::IndexPerturbation;
 use super::points::PointLanes;
-use crate::lanes::{ComplexLanes, Lanes};
+use crate::lanes::{ComplexLanes, LANES, Lanes};
 use crate::propagation::nystrom::{Field, Stage};
 use crate::transformation::{JetLanes, LaneMap};
 
@@ -48,6 +49,27 @@ pub(super) struct EvenForce<'w, S: Simd, M> {
 pub(super) struct PerturbedForce<'w, S: Simd, M> {
     pub even: EvenForce<'w, S, M>,
     pub index_perturbation: &'w IndexPerturbation,
+}
+
+/// Looks at the perturbation of four rays.
+struct Looks<'w> {
+    index_perturbation: &'w IndexPerturbation,
+    places: [Complex64; LANES],
+}
+
+impl WithSimd for Looks<'_> {
+    /// ρ², and both parts of g.
+    type Output = [[f64; LANES]; 3];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let mut found = [[0.0; LANES]; 3];
+        for (i, place) in self.places.into_iter().enumerate() {
+            let (square, gradient) = self.index_perturbation.look(place);
+            (found[0][i], found[1][i], found[2][i]) = (square, gradient.re, gradient.im);
+        }
+        found
+    }
 }
 
 /// What is found at virtual points.
@@ -130,9 +152,10 @@ impl<S: Simd, M: LaneMap> Field<S, 3> for PerturbedForce<'_, S, M> {
 impl<S: Simd, M: LaneMap> Force<S, 3> for PerturbedForce<'_, S, M> {
     #[inline(always)]
     fn found(&self, map: JetLanes<S>) -> UnevenJet<S> {
-        let factors = map.f.values().map(|z| self.index_perturbation.look(z));
-        let square = map.f.re.with(factors.map(|(square, _)| square));
-        UnevenJet { map, square, gradient: map.f.with(factors.map(|(_, gradient)| gradient)) }
+        let looks = Looks { index_perturbation: self.index_perturbation, places: map.f.values() };
+        let [squares, re, im] = map.f.re.apart(looks);
+        let gradient = ComplexLanes { re: map.f.re.with(re), im: map.f.re.with(im) };
+        UnevenJet { map, square: map.f.re.with(squares), gradient }
     }
 
     #[inline(always)]

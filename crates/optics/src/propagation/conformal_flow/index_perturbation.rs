@@ -52,7 +52,7 @@ impl IndexPerturbation {
     }
 
     /// ρ² and ∂ρ²/∂x + i ∂ρ²/∂y, 1/cm, at one place.
-    #[inline]
+    #[inline(always)]
     pub(super) fn look(&self, z: Complex64) -> (f64, Complex64) {
         let (square, gradient) = self.square.look(DVec2::new(z.re, z.im));
         (square, Complex64::new(gradient.x, gradient.y))
@@ -82,11 +82,17 @@ impl ConformalFlow {
 
     /// How exactly rays are to be followed for a tolerance, cm, that meet the mirror or do not.
     pub(super) fn step_control(&self, tolerance: f64, to_mirror: bool) -> StepControl {
-        // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight
-        // one would; and the errors of many short steps add up.
-        let uneven = self.is_uneven();
-        let smoothness = if uneven { 0.3 } else { self.map.smoothness() };
-        let share = if uneven || to_mirror { MIRROR_TOLERANCE } else { 1.0 };
+        // Nothing can be counted on in a spline of low degree, nor that a ray meets the mirror where
+        // a straight one would; and the errors of many short steps add up.
+        let uneven = self.index_perturbation.as_ref();
+        let smooth = uneven.map(|index_perturbation| index_perturbation.square.is_smooth());
+        let smoothness = match smooth {
+            None => self.map.smoothness(),
+            Some(true) => 3.0,
+            Some(false) => 0.3,
+        };
+        let share = if smooth == Some(false) || to_mirror { MIRROR_TOLERANCE } else { 1.0 };
+        let uneven = uneven.is_some();
         StepControl::new(self.scale(), smoothness, share * tolerance, uneven)
     }
 

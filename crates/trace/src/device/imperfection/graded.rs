@@ -10,7 +10,7 @@ use super::{Deviates, Imperfection, TABLE};
 use crate::keys::KeyError;
 use glam::{DVec2, DVec3};
 use num_complex::Complex64;
-use optics::propagation::{GridSpline, Half, IndexPerturbation};
+use optics::propagation::{Degree, GridSpline, Half, IndexPerturbation};
 use std::f64::consts::TAU;
 
 /// Plane waves that a random field is made of.
@@ -62,7 +62,13 @@ pub(super) fn apply(
         }
     }
     let squares: Vec<f64> = factor.iter().map(|factor| factor * factor).collect();
-    let spline = GridSpline::new(grid.corner, DVec2::splat(grid.spacing), grid.count, &squares);
+    let spline = GridSpline::new(
+        Degree::Seven,
+        grid.corner,
+        DVec2::splat(grid.spacing),
+        grid.count,
+        &squares,
+    );
     let index_perturbation = spline.ok().and_then(IndexPerturbation::new).ok_or_else(|| {
         KeyError::at(TABLE, "with this imperfection the index is not above 0 everywhere")
     })?;
