@@ -6,6 +6,7 @@
 //! crate do so briefly, and repeat every input that once found a fault (`regressions/`). The
 //! program `soak` traces random rays through random devices and counts.
 
+mod birefringence;
 mod cuts;
 mod draws;
 mod flights;
@@ -17,6 +18,7 @@ mod stacks;
 mod touching;
 mod trials;
 
+pub use birefringence::hardly_birefringent;
 pub use cuts::cut_glass;
 pub use draws::Draws;
 pub use flights::fly;

@@ -3,7 +3,8 @@
 
 use crate::long::count;
 use robustness::{
-    Draws, cut_glass, fly, interpolate, interpolate_small, stack, touch, touching_kinds,
+    Draws, cut_glass, fly, hardly_birefringent, interpolate, interpolate_small, stack, touch,
+    touching_kinds,
 };
 
 #[test]
@@ -39,6 +40,14 @@ fn plates_in_any_pose_keep_the_power_of_what_interferes() {
     let mut draws = Draws::Seed(33);
     for _ in 0..count(20, 600) {
         stack(&mut draws);
+    }
+}
+
+#[test]
+fn hardly_birefringent_bodies_look_as_isotropic_ones() {
+    let mut draws = Draws::Seed(51);
+    for _ in 0..count(20, 600) {
+        hardly_birefringent(&mut draws);
     }
 }
 

@@ -39,6 +39,16 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
             true => tracer.with_group_delays_to(detection.pulse_tolerance),
             false => tracer,
         };
+        let tracer = match prepared.coherence {
+            // In media that absorb, the power that fields exchange is booked with what they absorb.
+            Some(coherence)
+                if prepared.assembly.is_hardly_birefringent(coherence.reach())
+                    && !prepared.assembly.absorbs() =>
+            {
+                tracer.joining_similar(coherence)
+            }
+            _ => tracer,
+        };
         Self {
             prepared,
             detection,

@@ -47,13 +47,15 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
     pulses.clear();
     group_pulses.clear();
     returns.clear();
-    let absorbed = detection.detected(&here.outcome.absorbed);
+    let [pruned, absorbed] =
+        [here.outcome.pruned, here.outcome.absorbed].map(|power| detection.detected(&power));
     if COHERENT {
-        interference.find(prepared, detection, here.leaves, here.ray.origin, absorbed);
+        let gone = [pruned, absorbed];
+        interference.find(prepared, detection, here.leaves, here.ray.origin, gone);
         pixel.absorbed -= interference.added;
     }
     pixel.absorbed += absorbed;
-    pixel.pruned += detection.detected(&here.outcome.pruned);
+    pixel.pruned += pruned;
     for (number, leaf) in here.leaves.iter().enumerate() {
         let power = detection.detected(&leaf.power);
         let screen = leaf.distance_to(&prepared.screen);

@@ -11,6 +11,9 @@ use std::ops::Range;
 /// below 1e-12.
 const FARTHEST: f64 = 7.5;
 
+/// What rounding may make of all power.
+const ROUNDING: f64 = 1e-9;
+
 /// What a leaf sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sight {
@@ -48,34 +51,41 @@ pub(super) struct Interference {
 }
 
 impl Interference {
-    /// Finds the pairs among the leaves of a ray that starts at `camera` and of which a share has
-    /// been `absorbed`, and the gains of the leaves.
+    /// Finds the pairs among the leaves of a ray that starts at `camera` and of which shares have
+    /// been pruned and absorbed, and the gains of the leaves.
     pub fn find<const N: usize>(
         &mut self,
         prepared: &PreparedScene<'_>,
         detection: &Detection<N>,
         leaves: &[Leaf<N>],
         camera: DVec3,
-        absorbed: f64,
+        [pruned, absorbed]: [f64; 2],
     ) {
         self.lights.clear();
         self.pair_up(prepared, detection, leaves, camera);
         self.share_out(detection, leaves);
-        self.close(detection, leaves, absorbed);
+        let left = detection.detected(&[1.0; N]) - pruned;
+        self.close(detection, leaves, left, absorbed);
     }
 
     /// Has the shares of the power add up. What the photograph gets is that which the picture shows of
     /// it. The rest takes what is left: where nothing was absorbed all of it, whatever the pairs give
     /// it. They give it something else where parts of the beam come to an edge or to another place,
-    /// which the ray alone does not tell, or by the fields of branches that were pruned.
+    /// which the ray alone does not tell, by the fields of branches that were pruned, or where some
+    /// branches were joined on the way and others were not. `left` is what was not pruned.
     fn close<const N: usize>(
         &mut self,
         detection: &Detection<N>,
         leaves: &[Leaf<N>],
+        left: f64,
         absorbed: f64,
     ) {
         if self.gain.is_empty() {
-            return;
+            let out = leaves.iter().map(|leaf| detection.detected(&leaf.power)).sum::<f64>();
+            if absorbed != 0.0 || (out - left).abs() <= ROUNDING {
+                return;
+            }
+            self.gain.resize(leaves.len(), 1.0);
         }
         // Of the photograph, and of the rest: the power without pairs, and with them.
         let mut sums = [[0.0; 2]; 2];
@@ -88,7 +98,7 @@ impl Interference {
         let [[alone_seen, seen], [alone_rest, rest]] = sums;
         let alone = alone_seen + alone_rest;
         let most = alone + absorbed;
-        let together = if absorbed > 0.0 { (seen + rest).min(most) } else { alone };
+        let together = if absorbed > 0.0 { (seen + rest).min(most) } else { left };
         let rest_share = if alone_rest > 0.0 { (together - seen).max(0.0) } else { 0.0 };
         let seen_share = together - rest_share;
         for (number, leaf) in leaves.iter().enumerate() {
@@ -104,7 +114,7 @@ impl Interference {
                 *gain = share / without;
             }
         }
-        self.added = together - alone;
+        self.added = if absorbed > 0.0 { together - alone } else { 0.0 };
     }
 
     fn sees_photograph<const N: usize>(&self, number: usize, leaf: &Leaf<N>) -> bool {

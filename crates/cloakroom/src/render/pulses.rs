@@ -113,8 +113,9 @@ fn list<const N: usize>(
         .with_group_delays();
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
     let mut interference = Interference::default();
-    let absorbed = detection.detected(&outcome.absorbed);
-    interference.find(prepared, detection, leaves, ray.origin, absorbed);
+    let gone = [outcome.pruned, outcome.absorbed].map(|power| detection.detected(&power));
+    let absorbed = gone[1];
+    interference.find(prepared, detection, leaves, ray.origin, gone);
     let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
     for (number, leaf) in leaves.iter().enumerate() {
         let power = detection.detected(&leaf.power) * interference.gain(number);

@@ -129,13 +129,14 @@ fn write_line(mut record: &File, line: &Value) -> io::Result<()> {
 type Trial = fn(&mut Draws<'_>) -> u64;
 
 /// What parcels are of beside one device each.
-const TRIALS: [(&str, Trial); 6] = [
+const TRIALS: [(&str, Trial); 7] = [
     ("devices that touch", robustness::touch_any),
     ("cut glass", robustness::cut_glass),
     ("stacks of plates", robustness::stack),
     ("pictures of shared rays", robustness::interpolate),
     ("pictures of small parts", robustness::interpolate_small),
     ("light in flight", robustness::fly),
+    ("hardly birefringent bodies", robustness::hardly_birefringent),
 ];
 
 /// What a parcel is of: a device, or a trial.

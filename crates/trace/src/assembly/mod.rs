@@ -97,6 +97,14 @@ impl Assembly {
         Self { vacuum_wave_number, ..self }
     }
 
+    /// Whether there are media with two waves, and the optical paths of these differ in each by no
+    /// more than that (cm) after the thinnest part of its device.
+    #[must_use]
+    pub fn is_hardly_birefringent(&self, path: f64) -> bool {
+        let mut parted = self.devices.iter().flat_map(Placed::parted).peekable();
+        parted.peek().is_some() && parted.all(|parted| parted <= path)
+    }
+
     /// Whether a medium, a metal or a film of a device takes power from light.
     #[must_use]
     pub fn absorbs(&self) -> bool {

@@ -136,20 +136,34 @@ impl Placed {
     /// infinite without.
     #[must_use]
     pub fn least_path_difference(&self) -> f64 {
-        let Structure { regions, hull, .. } = &self.structure;
-        let thickness = hull.solids.iter().map(Solid::thickness).fold(f64::INFINITY, f64::min);
-        let media = regions.iter().filter_map(|region| match region {
-            Region::Homogeneous(region) => Some(&region.medium),
-            _ => None,
-        });
         let difference = |medium: &Medium| {
             let reflected = 2.0 * medium.mean_index().abs();
             let birefringence = medium.birefringence();
-            let least = if birefringence > 0.0 { reflected.min(birefringence) } else { reflected };
-            least * thickness
+            if birefringence > 0.0 { reflected.min(birefringence) } else { reflected }
         };
-        let least = media.map(difference).fold(f64::INFINITY, f64::min);
-        if self.structure.polarizes() { 0.0 } else { least }
+        let least = self.media().map(difference).fold(f64::INFINITY, f64::min);
+        if self.structure.polarizes() { 0.0 } else { least * self.thinnest() }
+    }
+
+    /// By how much the optical paths of both waves of each of its homogeneous media differ after the
+    /// thinnest part, cm, where they do.
+    pub(super) fn parted(&self) -> impl Iterator<Item = f64> {
+        let parted = self.media().map(Medium::birefringence).filter(|parted| *parted > 0.0);
+        parted.map(|parted| parted * self.thinnest())
+    }
+
+    /// Its homogeneous media.
+    fn media(&self) -> impl Iterator<Item = &Medium> {
+        self.structure.regions.iter().filter_map(|region| match region {
+            Region::Homogeneous(region) => Some(&region.medium),
+            _ => None,
+        })
+    }
+
+    /// How thick its thinnest part is, cm.
+    fn thinnest(&self) -> f64 {
+        let solids = &self.structure.hull.solids;
+        solids.iter().map(Solid::thickness).fold(f64::INFINITY, f64::min)
     }
 
     /// Its films in the world's frame.

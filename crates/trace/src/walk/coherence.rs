@@ -12,6 +12,7 @@ use super::{Leaf, LeafEnd};
 use crate::assembly::{Assembly, slack_at};
 use glam::DVec3;
 use num_complex::Complex64;
+use optics::medium::ModeKind;
 use optics::wave::ComplexVector;
 use std::f64::consts::{LN_2, PI, TAU};
 
@@ -196,34 +197,71 @@ impl Coherence {
     }
 }
 
+/// How alike branches are that become one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Joining {
+    coherence: Coherence,
+    /// The largest difference of their wave vectors.
+    wave: f64,
+    /// The largest difference of their phase lengths, cm.
+    length: f64,
+}
+
 /// Wave vectors that differ by no more than this are one.
 const SAME_WAVE: f64 = 1e-11;
+
+/// By how much the phase of a picture's branch may be off where it lands, so far on (cm): that of
+/// a thousandth of the wavelength.
+const PHASE_OFF: f64 = 6e-3;
+const REACH: f64 = 100.0;
+
+/// Phase lengths that differ by no more than this share of the coherence length are one in pictures:
+/// the degree of coherence changes by 4e-4 at most.
+const SIMILAR_LENGTH: f64 = 1e-2;
 
 /// Branches of one wave that are no further apart than this run together, cm.
 const BESIDE: f64 = 5e-3;
 
-impl Coherence {
+impl Joining {
+    /// Those that are one but for rounding.
+    pub fn same(coherence: Coherence) -> Self {
+        Self { coherence, wave: SAME_WAVE, length: SAME_LENGTH * coherence.length }
+    }
+
+    /// Those that a picture cannot tell apart: the path of a ray beside one varies by the square of
+    /// its angle to it (Fermat).
+    pub fn similar(coherence: Coherence) -> Self {
+        let wave = (PHASE_OFF / (coherence.wave_number * REACH)).sqrt();
+        Self { coherence, wave, length: SIMILAR_LENGTH * coherence.length }
+    }
+
+    /// What the fingerprint of a branch says of its mode: nothing where the ways of both are one.
+    pub fn told(&self, mode: ModeKind) -> ModeKind {
+        if self.wave > SAME_WAVE { ModeKind::Shared } else { mode }
+    }
+
     /// Adds the field of another branch to one that is the same plane wave, of the same phase
     /// length and with nothing between them; whether it is.
-    pub(super) fn join<const N: usize>(
+    pub fn join<const N: usize>(
         &self,
         assembly: &Assembly,
         branch: &mut Branch<N>,
         other: &Branch<N>,
     ) -> bool {
         let apart = branch.position - other.position;
-        let length = other.optical_path - branch.optical_path + branch.wave_vector.dot(apart);
-        let same = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= SAME_WAVE;
+        let mean = 0.5 * (branch.wave_vector + other.wave_vector);
+        let length = other.optical_path - branch.optical_path + mean.dot(apart);
+        let same = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= self.wave;
         let together = branch.place == other.place
             && branch.mode == other.mode
             && branch.departed == other.departed
             && apart.length() <= BESIDE
-            && length.abs() <= SAME_LENGTH * self.length
+            && length.abs() <= self.length
             && same(branch.wave_vector, other.wave_vector)
             && same(branch.attenuation, other.attenuation)
             && !are_separated(assembly, branch, other);
         if together {
-            let phase = Complex64::cis(self.wave_number * length);
+            let phase = Complex64::cis(self.coherence.wave_number * length);
             for i in 0..N {
                 // Power is the square of the field but for what is the same in both.
                 let scale = if branch.power[i] > other.power[i] {

@@ -479,6 +479,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             return false;
         }
         let least_power = self.limits.min_power;
+        let joining = self.joining;
+        let told = |mode| joining.map_or(mode, |joining| joining.told(mode));
         let mut last: Option<&OutgoingWave<N>> = None;
         for wave in waves {
             if !self.follows(wave.power) {
@@ -488,7 +490,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 // Branches are large, and made where they wait.
                 self.waiting.push(*branch);
                 if let Some(other) = self.waiting.last_mut() {
-                    other.go_on_as(earlier, (event, earlier.side, earlier.mode));
+                    other.go_on_as(earlier, (event, earlier.side, told(earlier.mode)));
                     other.update_survival(least_power);
                     put(other, earlier.side);
                     let power = largest(&other.power);
@@ -500,7 +502,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
         let Some(wave) = last else { return false };
         let from = branch.path;
-        branch.go_on_as(wave, (event, wave.side, wave.mode));
+        branch.go_on_as(wave, (event, wave.side, told(wave.mode)));
         branch.update_survival(least_power);
         put(branch, wave.side);
         self.recorder.went_on(from, branch.path, largest(&branch.power))

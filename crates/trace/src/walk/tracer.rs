@@ -1,6 +1,7 @@
 //! The walk along the ray tree.
 
 use super::branch::{Branch, Place, largest};
+use super::coherence::Joining;
 use super::draw::{Draw, MOST_EVENTS_DRAWN};
 use super::{Coherence, Leaf, Outcome, PathRecorder};
 use crate::assembly::{Assembly, Screen};
@@ -87,8 +88,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     /// is taken.
     heaped: Option<usize>,
     pub(super) recorder: W,
-    /// The light whose branches become one where they run together.
-    joining: Option<Coherence>,
+    /// Which branches become one where they run together.
+    pub(super) joining: Option<Joining>,
     /// How one of its leaves is drawn, if only that is wanted.
     pub(super) draw: Option<Draw<N>>,
     /// Whether leaves are to know what a pulse takes.
@@ -173,7 +174,14 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// moves between leaves is in no account.
     #[must_use]
     pub fn joining(self, coherence: Coherence) -> Self {
-        Self { joining: Some(coherence), ..self }
+        Self { joining: Some(Joining::same(coherence)), ..self }
+    }
+
+    /// Makes one branch, too, of those that a picture cannot tell apart, but for their phases: both
+    /// waves of a medium that is hardly birefringent would be parted at each surface again.
+    #[must_use]
+    pub fn joining_similar(self, coherence: Coherence) -> Self {
+        Self { joining: Some(Joining::similar(coherence)), ..self }
     }
 
     /// Follows rays within other limits.
@@ -434,8 +442,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         if self.draw.is_some() {
             return self.take_drawn(branch);
         }
-        if let Some(coherence) = self.joining {
-            return self.take_joined(branch, coherence);
+        if let Some(joining) = self.joining {
+            return self.take_joined(branch, joining);
         }
         if let Some(heaped) = self.heaped {
             *branch = self.take_strongest(heaped)?;
@@ -447,13 +455,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     }
 
     #[cold]
-    fn take_joined(&mut self, branch: &mut Branch<N>, coherence: Coherence) -> Option<()> {
+    fn take_joined(&mut self, branch: &mut Branch<N>, joining: Joining) -> Option<()> {
         loop {
             let paths = self.waiting.iter().map(|branch| branch.optical_path).enumerate();
             let (shortest, _) = paths.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
             *branch = self.waiting.swap_remove(shortest);
             let assembly = self.assembly;
-            self.waiting.retain(|other| !coherence.join(assembly, branch, other));
+            self.waiting.retain(|other| !joining.join(assembly, branch, other));
             // Their fields may have cancelled.
             if self.follows(branch.power) {
                 return Some(());
