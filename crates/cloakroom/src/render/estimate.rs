@@ -27,16 +27,16 @@ const LONGEST: Duration = Duration::from_secs(2);
 const EACH: Duration = Duration::from_millis(40);
 
 /// Patches that are looked at, if there is time.
-const MOST_PATCHES: usize = 192;
+const MOST_PATCHES: usize = 512;
 
 /// Blocks of a part of a patch that are exposed, of one sample each.
-const BLOCKS: usize = 12;
+const BLOCKS: usize = 24;
 
 /// A prime above the number of patches: its multiples visit them all, here and there in the picture.
 const STRIDE: usize = 1_000_003;
 
 /// How many rays of samples tracers have followed.
-fn walks_of(tracers: &[BlockTracer<'_, 2>]) -> f64 {
+fn walks_of<const N: usize>(tracers: &[BlockTracer<'_, N>]) -> f64 {
     tracers.iter().map(|tracer| tracer.walks).sum()
 }
 
@@ -44,10 +44,18 @@ fn walks_of(tracers: &[BlockTracer<'_, 2>]) -> f64 {
 /// in part and timed, as many as two seconds take.
 #[must_use]
 pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
+    match prepared.scene.camera.polarizer.amplitudes() {
+        None => estimate_of(prepared, Detection::UNPOLARIZED),
+        Some(amplitudes) => estimate_of(prepared, Detection::image(amplitudes)),
+    }
+}
+
+fn estimate_of<const N: usize>(prepared: &PreparedScene<'_>, detection: Detection<N>) -> Estimate {
     let camera = &prepared.scene.camera;
     let size = camera.resolution.map(|side| side as usize);
-    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &prepared.scene.picture);
-    let (mut exposer, mut tracers) = Exposer::new(prepared, [&detection, &detection]);
+    let detection = detection.with_options(ChannelSet::Image, &prepared.scene.picture);
+    let colors = detection.of_colors();
+    let (mut exposer, mut tracers) = Exposer::new(prepared, [&detection, &colors]);
     let side = BlockTracer::common_side(&tracers);
     let [columns, rows] = size.map(|pixels| pixels.div_ceil(side));
     let start = Instant::now();
@@ -62,7 +70,7 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
         let began = Instant::now();
         // What exposing the blocks took, and would take of all.
         let (mut exposing, mut all) = (0.0, 0.0);
-        let mut expose = |tracers: &mut [BlockTracer<'_, 2>], patch: Patch, traced: &[f64]| {
+        let mut expose = |tracers: &mut [BlockTracer<'_, N>], patch: Patch, traced: &[f64]| {
             let (began, walked) = (Instant::now(), walks_of(tracers));
             let [across, down] =
                 patch.part_of([0; 2], size).map(|range| (range.start, range.len().div_ceil(2)));
@@ -70,20 +78,31 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
             let step = blocks.div_ceil(BLOCKS);
             let mut count = 0.0;
             // From the middle of the first step on: columns and rows are met evenly.
-            for block in (step / 2..blocks).step_by(step) {
+            let numbers = (step / 2..blocks).step_by(step);
+            let mut look = |block: usize| {
                 let corner = [across.0 + block % across.1 * 2, down.0 + block / across.1 * 2];
                 exposer.expose_block(tracers, corner, 0, traced, &mut Default::default());
+            };
+            for block in numbers.clone() {
+                look(block);
                 count += 1.0;
                 // Where rays take long, those of other patches say more.
                 if began.elapsed() >= EACH {
                     break;
                 }
             }
-            let took = began.elapsed().as_secs_f64();
+            let took = began.elapsed();
+            // What is made or fetched once, when it is first asked for, is not done for each block.
+            let (looks, again) = if took < EACH {
+                numbers.for_each(&mut look);
+                (2.0, began.elapsed() - took)
+            } else {
+                (1.0, took)
+            };
             let scale = blocks as f64 / count * f64::from(camera.samples);
-            exposing += took;
-            all += took * scale;
-            walks += (walks_of(tracers) - walked) * scale;
+            exposing += began.elapsed().as_secs_f64();
+            all += took.as_secs_f64() + again.as_secs_f64() * (scale - 1.0);
+            walks += (walks_of(tracers) - walked) * scale / looks;
             Ok(())
         };
         let patch = Patch { corner, size: [side; 2] };
