@@ -62,14 +62,16 @@ pub(super) fn apply(
         }
     }
     let squares: Vec<f64> = factor.iter().map(|factor| factor * factor).collect();
-    let spline = GridSpline::new(
-        Degree::Seven,
-        grid.corner,
-        DVec2::splat(grid.spacing),
-        grid.count,
-        &squares,
-    );
-    let index_perturbation = spline.ok().and_then(IndexPerturbation::new).ok_or_else(|| {
+    let of_degree = |degree| {
+        let spacing = DVec2::splat(grid.spacing);
+        let spline = GridSpline::new(degree, grid.corner, spacing, grid.count, &squares);
+        spline.ok().and_then(IndexPerturbation::new)
+    };
+    // Only what is smooth from sample to sample is so between them in a high degree: a limited index
+    // has a step beyond the medium, where the smoothing ends.
+    let smooth = if limited { None } else { of_degree(Degree::Seven) };
+    let index_perturbation = smooth.or_else(|| of_degree(Degree::Three));
+    let index_perturbation = index_perturbation.ok_or_else(|| {
         KeyError::at(TABLE, "with this imperfection the index is not above 0 everywhere")
     })?;
     region.flow = region.flow.clone().with_index_perturbation(index_perturbation);
