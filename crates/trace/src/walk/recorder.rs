@@ -9,6 +9,9 @@ pub trait PathRecorder<const N: usize> {
     /// Whether rays end at the first surface that they meet.
     const STOPS_AT_SURFACE: bool = false;
 
+    /// Whether branches may become one under way: where nobody watches.
+    const JOINS: bool = false;
+
     /// Called for each piece of a branch's way from surface to surface.
     fn record(&mut self, segment: impl FnOnce() -> PathSegment<N>);
 
@@ -75,6 +78,8 @@ impl PathTime {
 }
 
 impl<const N: usize> PathRecorder<N> for () {
+    const JOINS: bool = true;
+
     #[inline(always)]
     fn record(&mut self, _: impl FnOnce() -> PathSegment<N>) {}
 }

@@ -479,7 +479,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             return false;
         }
         let least_power = self.limits.min_power;
-        let joining = self.joining;
+        let joining = self.joins();
         let told = |mode| joining.map_or(mode, |joining| joining.told(mode));
         let mut last: Option<&OutgoingWave<N>> = None;
         for wave in waves {

@@ -89,7 +89,7 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     heaped: Option<usize>,
     pub(super) recorder: W,
     /// Which branches become one where they run together.
-    pub(super) joining: Option<Joining>,
+    joining: Option<Joining>,
     /// How one of its leaves is drawn, if only that is wanted.
     pub(super) draw: Option<Draw<N>>,
     /// Whether leaves are to know what a pulse takes.
@@ -357,7 +357,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             };
             if !goes_on {
                 self.take_next(branch)?;
-            } else if self.joining.is_some() || self.heaped.is_some() || self.has_forked() {
+            } else if self.joins().is_some() || self.heaped.is_some() || self.has_forked() {
                 self.waiting.push(*branch);
                 self.take_next(branch)?;
             }
@@ -442,7 +442,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         if self.draw.is_some() {
             return self.take_drawn(branch);
         }
-        if let Some(joining) = self.joining {
+        if let Some(joining) = self.joins() {
             return self.take_joined(branch, joining);
         }
         if let Some(heaped) = self.heaped {
@@ -452,6 +452,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         *branch = *self.waiting.last()?;
         self.waiting.truncate(self.waiting.len() - 1);
         Some(())
+    }
+
+    /// Which branches become one, if any do.
+    #[inline]
+    pub(super) fn joins(&self) -> Option<Joining> {
+        if W::JOINS { self.joining } else { None }
     }
 
     #[cold]
@@ -531,7 +537,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// they have few digits.
     #[cold]
     fn is_rounding(&self, rest: f64) -> bool {
-        rest.abs() <= NO_POWER || self.joining.is_some() && rest.abs() <= LEAK * CANCELLED
+        rest.abs() <= NO_POWER || self.joins().is_some() && rest.abs() <= LEAK * CANCELLED
     }
 
     /// Whether a branch of that power is followed; else it is pruned, and need not be made.

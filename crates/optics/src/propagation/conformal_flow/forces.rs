@@ -63,12 +63,7 @@ impl WithSimd for Looks<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let mut found = [[0.0; LANES]; 3];
-        for (i, place) in self.places.into_iter().enumerate() {
-            let (square, gradient) = self.index_perturbation.look(place);
-            (found[0][i], found[1][i], found[2][i]) = (square, gradient.re, gradient.im);
-        }
-        found
+        self.index_perturbation.look_at_four(self.places)
     }
 }
 

@@ -7,6 +7,7 @@ use num_complex::Complex64;
 
 use super::step_control::StepControl;
 use super::{ConformalFlow, MIRROR_TOLERANCE};
+use crate::lanes::LANES;
 use crate::propagation::GridSpline;
 use crate::transformation::MapJet;
 
@@ -52,10 +53,24 @@ impl IndexPerturbation {
     }
 
     /// ρ² and ∂ρ²/∂x + i ∂ρ²/∂y, 1/cm, at one place.
-    #[inline(always)]
+    // The page is to be small, and has no wide instructions.
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub(super) fn look(&self, z: Complex64) -> (f64, Complex64) {
         let (square, gradient) = self.square.look(DVec2::new(z.re, z.im));
         (square, Complex64::new(gradient.x, gradient.y))
+    }
+
+    /// The same at four places: ρ², and both parts of its gradient.
+    #[cfg_attr(target_arch = "wasm32", inline(never))]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    pub(super) fn look_at_four(&self, places: [Complex64; LANES]) -> [[f64; LANES]; 3] {
+        let mut found = [[0.0; LANES]; 3];
+        for (i, place) in places.into_iter().enumerate() {
+            let (square, gradient) = self.look(place);
+            (found[0][i], found[1][i], found[2][i]) = (square, gradient.re, gradient.im);
+        }
+        found
     }
 }
 
