@@ -7,7 +7,7 @@ use optics::geometry::Extent;
 use optics::propagation::{Boundary, Degree, GridSpline, IndexPerturbation};
 
 /// Samples of the square of a factor on a grid that reaches beyond the cut.
-fn grid(spacing: f64, square: impl Fn(DVec2) -> f64) -> GridSpline {
+fn grid(degree: Degree, spacing: f64, square: impl Fn(DVec2) -> f64) -> GridSpline {
     let corner = DVec2::new(CUT.x_min - 4.0, -6.0);
     let end = DVec2::new(CUT.x_max + 4.0, CUT.y_max + 4.0);
     let [columns, rows] =
@@ -15,7 +15,7 @@ fn grid(spacing: f64, square: impl Fn(DVec2) -> f64) -> GridSpline {
     let place =
         |k: usize| corner + spacing * DVec2::new((k % columns) as f64, (k / columns) as f64);
     let samples: Vec<f64> = (0..columns * rows).map(|k| square(place(k))).collect();
-    GridSpline::new(Degree::Seven, corner, DVec2::splat(spacing), [columns, rows], &samples)
+    GridSpline::new(degree, corner, DVec2::splat(spacing), [columns, rows], &samples)
         .expect("a grid")
 }
 
@@ -33,8 +33,9 @@ fn bumps(p: DVec2) -> f64 {
 fn an_even_unevenness_is_none() {
     let short = Extent { min: -10.0, max: 10.0 };
     let even = flow(short, 1.1);
-    let uneven = flow(short, 1.1)
-        .with_index_perturbation(IndexPerturbation::new(grid(2.0, |_| 1.0)).expect("positive"));
+    let uneven = flow(short, 1.1).with_index_perturbation(
+        IndexPerturbation::new(grid(Degree::Three, 2.0, |_| 1.0)).expect("positive"),
+    );
     let mut dice = Dice(77);
     for _ in 0..300 {
         let (start, p) = dice.enter(&even, short);
@@ -55,12 +56,16 @@ fn an_even_unevenness_is_none() {
 #[test]
 fn uneven_rays_obey_the_physical_ray_equation() {
     let short = Extent { min: -10.0, max: 10.0 };
-    let splines = [grid(0.8, hills), grid(0.5, bumps)];
+    let splines = [
+        grid(Degree::Three, 0.8, hills),
+        grid(Degree::Seven, 0.8, hills),
+        grid(Degree::Seven, 0.5, bumps),
+    ];
     let mut dice = Dice(0x0dd5_eed5);
-    let (mut floors, mut compared, mut worst) = (0, 0, [0.0_f64; 4]);
-    for k in 0..120 {
-        let spline = &splines[k % 2];
-        let (extent, c) = [(Extent::ENDLESS, 1.0), (short, 1.0), (short, 1.1456)][k / 2 % 3];
+    let (mut floors, mut compared, mut worst) = (0, 0, [[0.0_f64; 4]; 3]);
+    for k in 0..180 {
+        let (spline, worst) = (&splines[k % 3], &mut worst[k % 3]);
+        let (extent, c) = [(Extent::ENDLESS, 1.0), (short, 1.0), (short, 1.1456)][k / 3 % 3];
         let flow = flow(extent, c)
             .with_index_perturbation(IndexPerturbation::new(spline.clone()).expect("positive"));
         for (start, p, end) in legs(&flow, dice.enter(&flow, extent), 1e-8) {
@@ -84,17 +89,20 @@ fn uneven_rays_obey_the_physical_ray_equation() {
             compared += 1;
         }
     }
-    assert!(compared > 100 && floors > 5, "{compared} {floors}");
-    assert!(worst[0] < 5e-8 && worst[1] < 1e-6, "{worst:?}");
-    assert!(worst[2] < 5e-8 && worst[3] < 2e-8, "{worst:?}");
+    assert!(compared > 150 && floors > 5, "{compared} {floors}");
+    // The reference crosses the lines of the grid without care.
+    let bounds = [[2e-7, 1e-6, 2e-7, 2e-7], [5e-8, 1e-6, 5e-8, 2e-8], [5e-8, 1e-6, 5e-8, 2e-8]];
+    let mut all = worst.as_flattened().iter().zip(bounds.as_flattened());
+    assert!(all.all(|(worst, bound)| worst < bound), "{worst:?}");
 }
 
 #[test]
 fn uneven_rays_can_be_reversed() {
     // Along z without an end, hills of the index can guide light for ever.
     let extent = Extent { min: -50.0, max: 50.0 };
-    let flow = flow(extent, 1.0)
-        .with_index_perturbation(IndexPerturbation::new(grid(0.5, hills)).expect("positive"));
+    let flow = flow(extent, 1.0).with_index_perturbation(
+        IndexPerturbation::new(grid(Degree::Three, 0.5, hills)).expect("positive"),
+    );
     let mut dice = Dice(99);
     for _ in 0..200 {
         let (start, p) = dice.enter(&flow, extent);
@@ -114,5 +122,5 @@ fn uneven_rays_can_be_reversed() {
 
 #[test]
 fn a_factor_must_be_positive() {
-    assert!(IndexPerturbation::new(grid(1.0, |p| p.x)).is_none());
+    assert!(IndexPerturbation::new(grid(Degree::Three, 1.0, |p| p.x)).is_none());
 }
