@@ -5,8 +5,8 @@ use super::branch::{Branch, Place};
 use super::event::Event;
 use super::surfaces::{Between, Interface};
 use super::{LeafEnd, PathRecorder, Tracer};
-use crate::assembly::{Ahead, DepartedSurface, slack_at};
-use crate::device::{Coating, FarSide, Passage};
+use crate::assembly::{Ahead, Assembly, DepartedSurface, Screen, slack_at};
+use crate::device::{Coating, FarSide, InnerRay, Passage};
 use glam::DVec3;
 use optics::interface::{OutgoingWaves, Side};
 use optics::medium::Medium;
@@ -36,7 +36,127 @@ enum Destination<'a> {
     },
 }
 
-impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
+impl Assembly {
+    /// What a ray in a body, in its frame, meets before the border to which it has passed, and the
+    /// passage to there.
+    pub(super) fn guest_ahead(
+        &self,
+        (ray, departed): (&InnerRay, Option<DepartedSurface>),
+        body: u16,
+        passage: Option<&Passage>,
+        screen: Option<Screen>,
+    ) -> Option<(Met, Passage)> {
+        let pose = &self.device(body).pose;
+        let origin = pose.to_world(ray.position);
+        let direction = pose.vector_to_world(ray.direction);
+        let slack = slack_at(origin);
+        let end = passage.map_or(f64::INFINITY, |p| (p.position - ray.position).length());
+        let hit = self.first_guest(body, origin, direction, departed);
+        let hit = hit.filter(|(_, hit)| hit.distance < end - slack);
+        let reach = hit.map_or(end - slack, |(_, hit)| hit.distance + slack);
+        let screen = screen.and_then(|screen| screen.hit(origin, direction, -slack));
+        let to = |distance: f64, face: u16, onward: DVec3| {
+            let end = ray.position + ray.direction * distance;
+            Passage::straight(ray, end, face, onward, FarSide::Outside)
+        };
+        if let Some(distance) = screen.filter(|distance| *distance <= reach) {
+            return Some((Met::Screen, to(distance.max(0.0), u16::MAX, ray.direction)));
+        }
+        let (guest, hit) = hit?;
+        let at = origin + direction * hit.distance;
+        let departed = departed.and_then(|departed| departed.unless_met(guest, &hit));
+        let met = match self.ahead(at, direction, departed) {
+            ahead @ Ahead::Surface(..) => Met::Device(ahead),
+            ahead @ Ahead::Body(there) if there != body => Met::Device(ahead),
+            Ahead::Air | Ahead::Body(_) => Met::Grazed(DepartedSurface::met(guest, &hit)),
+        };
+        let outward = self.device(guest).pose.vector_to_world(hit.outward);
+        Some((met, to(hit.distance, guest, -pose.vector_to_local(outward))))
+    }
+
+    /// What is between two media in the world, given the coating of what a branch leaves there and
+    /// what is ahead of it.
+    fn between(
+        &self,
+        (position, place): (DVec3, Place),
+        left: Coating,
+        ahead: Ahead,
+    ) -> Between<'_> {
+        let entered = match ahead {
+            Ahead::Air => None,
+            Ahead::Surface(number, hit) => Some((number, hit.coating)),
+            Ahead::Body(number) => {
+                let device = self.device(number);
+                let coating = device.structure.surfaces.first().map(|surface| surface.coating);
+                // Within a body its surface is not there.
+                coating.filter(|coating| *coating != Coating::None).zip(device.body()).and_then(
+                    |(coating, body)| {
+                        let local = device.pose.to_local(position);
+                        let slack = 2.0 * slack_at(position);
+                        body.shape.borders(local, slack).then_some((number, coating))
+                    },
+                )
+            }
+        };
+        let left = match place {
+            Place::Region { device, .. } => Some((device, left)),
+            Place::Air => None,
+        };
+        let sides = [left, entered];
+        let films = sides.map(|side| match side {
+            Some((device, Coating::Film(film))) => self.film_in_world(device, film),
+            _ => &[],
+        });
+        let perfect = |side: &Option<(u16, Coating)>| {
+            side.is_some_and(|(_, coating)| coating == Coating::Antireflection)
+        };
+        if films.iter().any(|film| !film.is_empty()) {
+            Between::Films(films)
+        } else if sides.iter().any(perfect) {
+            Between::PerfectCoating
+        } else {
+            Between::Nothing
+        }
+    }
+
+    /// What light has departed from that is sent back by what is ahead of it.
+    fn departed_from(&self, ahead: Ahead) -> Option<DepartedSurface> {
+        let (number, surface) = match ahead {
+            Ahead::Air => return None,
+            Ahead::Surface(number, hit) => (number, Some(hit.surface)),
+            Ahead::Body(number) => (number, None),
+        };
+        self.device(number).departed(number, surface)
+    }
+
+    /// What lies beyond a border, at a point of the world; `None` if rounding hides it.
+    fn destination(&self, position: DVec3, ahead: Ahead) -> Option<Destination<'_>> {
+        let (number, far) = match ahead {
+            Ahead::Air => return Some(Destination::Air),
+            Ahead::Surface(number, hit) => (number, hit.far),
+            // A body has one surface, and what is behind that is in it.
+            Ahead::Body(number) => (number, self.device(number).structure.surfaces.first()?.far),
+        };
+        Some(match far {
+            // Between a medium and a polarizer there is a gap of air, however thin.
+            FarSide::Outside | FarSide::Polarizer => Destination::Air,
+            FarSide::Conductor | FarSide::Metal(_) => {
+                Destination::Metal(self.device(number).structure.metal(far))
+            }
+            FarSide::Opaque => Destination::End(LeafEnd::Body(number)),
+            FarSide::Region(region) | FarSide::Seam(region) => {
+                let device = self.device(number);
+                let position = device.pose.to_local(position);
+                let mut graded = None;
+                let (virtual_point, medium) = device.region(region).enter(position, &mut graded)?;
+                let medium = device.medium_in_world(medium);
+                Destination::Region { place: (number, region), virtual_point, medium }
+            }
+        })
+    }
+}
+
+impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
     /// What a ray meets at a point, in the world, at which it leaves `departed`.
     pub(super) fn met_at(
         &self,
@@ -51,43 +171,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             return Met::Screen;
         }
         Met::Device(self.assembly.ahead(position, direction, departed))
-    }
-
-    /// What a ray in a body, in its frame, meets before the border to which it has passed, and the
-    /// passage to there.
-    pub(super) fn guest_ahead(
-        &self,
-        branch: &Branch<N>,
-        body: u16,
-        passage: Option<&Passage>,
-    ) -> Option<(Met, Passage)> {
-        let pose = &self.assembly.device(body).pose;
-        let origin = pose.to_world(branch.position);
-        let direction = pose.vector_to_world(branch.direction);
-        let slack = slack_at(origin);
-        let end = passage.map_or(f64::INFINITY, |p| (p.position - branch.position).length());
-        let hit = self.assembly.first_guest(body, origin, direction, branch.departed);
-        let hit = hit.filter(|(_, hit)| hit.distance < end - slack);
-        let reach = hit.map_or(end - slack, |(_, hit)| hit.distance + slack);
-        let screen = self.screen.and_then(|screen| screen.hit(origin, direction, -slack));
-        let ray = branch.inner_ray();
-        let to = |distance: f64, face: u16, onward: DVec3| {
-            let end = branch.position + branch.direction * distance;
-            Passage::straight(&ray, end, face, onward, FarSide::Outside)
-        };
-        if let Some(distance) = screen.filter(|distance| *distance <= reach) {
-            return Some((Met::Screen, to(distance.max(0.0), u16::MAX, branch.direction)));
-        }
-        let (guest, hit) = hit?;
-        let at = origin + direction * hit.distance;
-        let departed = branch.departed.and_then(|departed| departed.unless_met(guest, &hit));
-        let met = match self.assembly.ahead(at, direction, departed) {
-            ahead @ Ahead::Surface(..) => Met::Device(ahead),
-            ahead @ Ahead::Body(there) if there != body => Met::Device(ahead),
-            Ahead::Air | Ahead::Body(_) => Met::Grazed(DepartedSurface::met(guest, &hit)),
-        };
-        let outward = self.assembly.device(guest).pose.vector_to_world(hit.outward);
-        Some((met, to(hit.distance, guest, -pose.vector_to_local(outward))))
     }
 
     /// Takes a branch from a region across its border, both in the frame of the region's device, to
@@ -119,86 +202,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.cross(branch, &medium, passage.coating, ahead, (onward, event))
     }
 
-    /// What is between two media in the world, given the coating of what a branch leaves there and
-    /// what is ahead of it.
-    fn between(&self, branch: &Branch<N>, left: Coating, ahead: Ahead) -> Between<'a> {
-        let entered = match ahead {
-            Ahead::Air => None,
-            Ahead::Surface(number, hit) => Some((number, hit.coating)),
-            Ahead::Body(number) => {
-                let device = self.assembly.device(number);
-                let coating = device.structure.surfaces.first().map(|surface| surface.coating);
-                // Within a body its surface is not there.
-                coating.filter(|coating| *coating != Coating::None).zip(device.body()).and_then(
-                    |(coating, body)| {
-                        let position = device.pose.to_local(branch.position);
-                        let slack = 2.0 * slack_at(branch.position);
-                        body.shape.borders(position, slack).then_some((number, coating))
-                    },
-                )
-            }
-        };
-        let left = match branch.place {
-            Place::Region { device, .. } => Some((device, left)),
-            Place::Air => None,
-        };
-        let sides = [left, entered];
-        let assembly = self.assembly;
-        let films = sides.map(|side| match side {
-            Some((device, Coating::Film(film))) => assembly.film_in_world(device, film),
-            _ => &[],
-        });
-        let perfect = |side: &Option<(u16, Coating)>| {
-            side.is_some_and(|(_, coating)| coating == Coating::Antireflection)
-        };
-        if films.iter().any(|film| !film.is_empty()) {
-            Between::Films(films)
-        } else if sides.iter().any(perfect) {
-            Between::PerfectCoating
-        } else {
-            Between::Nothing
-        }
-    }
-
-    /// What light has departed from that is sent back by what is ahead of it.
-    fn departed_from(&self, ahead: Ahead) -> Option<DepartedSurface> {
-        let (number, surface) = match ahead {
-            Ahead::Air => return None,
-            Ahead::Surface(number, hit) => (number, Some(hit.surface)),
-            Ahead::Body(number) => (number, None),
-        };
-        self.assembly.device(number).departed(number, surface)
-    }
-
-    /// What lies beyond a border, at which the branch is, in the world's frame; `None` if rounding
-    /// hides it.
-    fn destination(&self, branch: &Branch<N>, ahead: Ahead) -> Option<Destination<'a>> {
-        let (number, far) = match ahead {
-            Ahead::Air => return Some(Destination::Air),
-            Ahead::Surface(number, hit) => (number, hit.far),
-            // A body has one surface, and what is behind that is in it.
-            Ahead::Body(number) => {
-                (number, self.assembly.device(number).structure.surfaces.first()?.far)
-            }
-        };
-        Some(match far {
-            // Between a medium and a polarizer there is a gap of air, however thin.
-            FarSide::Outside | FarSide::Polarizer => Destination::Air,
-            FarSide::Conductor | FarSide::Metal(_) => {
-                Destination::Metal(self.assembly.device(number).structure.metal(far))
-            }
-            FarSide::Opaque => Destination::End(LeafEnd::Body(number)),
-            FarSide::Region(region) | FarSide::Seam(region) => {
-                let device = self.assembly.device(number);
-                let position = device.pose.to_local(branch.position);
-                let mut graded = None;
-                let (virtual_point, medium) = device.region(region).enter(position, &mut graded)?;
-                let medium = device.medium_in_world(medium);
-                Destination::Region { place: (number, region), virtual_point, medium }
-            }
-        })
-    }
-
     /// Splits a branch, in the world's frame but still of the place that it leaves, at the border
     /// of that place, with its coating, to what is ahead.
     pub(super) fn cross(
@@ -209,13 +212,14 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         ahead: Ahead,
         (onward, event): (DVec3, Event),
     ) -> bool {
-        let interface = Interface { onward, between: self.between(branch, left, ahead), event };
-        let Some(destination) = self.destination(branch, ahead) else {
+        let (assembly, place) = (self.assembly, branch.place);
+        let between = assembly.between((branch.position, place), left, ahead);
+        let interface = Interface { onward, between, event };
+        let Some(destination) = assembly.destination(branch.position, ahead) else {
             return self.lose(branch.power);
         };
         // Sheets would be met again at once.
-        let departed = self.departed_from(ahead);
-        let (assembly, place) = (self.assembly, branch.place);
+        let departed = assembly.departed_from(ahead);
         let back = |branch: &mut Branch<N>| {
             branch.departed = departed;
             if let Place::Region { device, .. } = place {

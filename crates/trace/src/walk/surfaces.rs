@@ -209,7 +209,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     ) -> bool {
         let device = self.assembly.device(place.0);
         let is_body = device.body().is_some();
-        let guest = if is_body { self.guest_ahead(branch, place.0, passage.ok()) } else { None };
+        let guest = if is_body {
+            let ray = (&branch.inner_ray(), branch.departed);
+            self.assembly.guest_ahead(ray, place.0, passage.ok(), self.screen)
+        } else {
+            None
+        };
         let passage = match (&guest, passage) {
             (Some((_, passage)), _) | (None, Ok(passage)) => passage,
             // It is lost in rounding, or runs along an endless body for ever.
