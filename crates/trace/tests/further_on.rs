@@ -78,10 +78,10 @@ fn a_branch_taken_further_on_ends_where_its_ray_does() {
             *nothing.recorder() = Watcher::default();
             let launches = [launch; 4];
             let further_on = [vec![*branch], vec![], vec![*branch], vec![]];
-            four.trace_further_on(&launches, false, &further_on);
+            four.trace_further_on(&launches, [false; 4], &further_on);
             assert_eq!(by_path(four.tracers[0].traced().0), part);
             assert!(four.tracers[1].traced().0.is_empty());
-            four.trace_further_on(&launches, true, &further_on);
+            four.trace_further_on(&launches, [true; 4], &further_on);
             assert_eq!(by_path(four.tracers[1].traced().0), rest);
             let (found, outcome) = four.tracers[2].traced();
             assert_eq!(by_path(found), leaves);
@@ -106,7 +106,7 @@ fn a_branch_out_of_its_region_is_lost() {
     let mut branch = *whole.recorder().branches.iter().find(|branch| branch.is_movable()).unwrap();
     branch.position.x -= 1.0;
     let mut four = FourTracers::new(&tracer);
-    four.trace_further_on(&[launch; 4], false, &[vec![branch], vec![], vec![], vec![]]);
+    four.trace_further_on(&[launch; 4], [false; 4], &[vec![branch], vec![], vec![], vec![]]);
     let (leaves, outcome) = four.tracers[0].traced();
     assert_eq!((leaves.len(), outcome.stats.lost), (0, 1));
     assert_eq!(outcome.pruned, branch.power);

@@ -13,6 +13,9 @@ use optics::propagation::{
 use optics::wave::ComplexVector;
 use std::sync::Arc;
 
+/// Rays whose sine of the angle with a plane is less do not come to it: so far away they would.
+const LEAST_APPROACH: f64 = 1e-3;
+
 /// Straight pieces that a closed form's path is drawn with.
 const PIECES: u32 = 96;
 
@@ -348,6 +351,31 @@ impl Region {
             Self::Spatial(region) => return region.advance(ray, tolerance),
         };
         passage.ok_or(NoPassage::Lost)
+    }
+
+    /// The planes that bound it, if it is homogeneous and between planes; else none.
+    #[must_use]
+    pub fn faces(&self) -> &[Face] {
+        match self {
+            Self::Homogeneous(region) => region.faces(),
+            _ => &[],
+        }
+    }
+
+    /// As [`Region::advance`], but in a homogeneous medium between planes, to that one of them as if
+    /// there were no others: further on than the border of the region, or back. Nothing where the
+    /// ray does not come to it.
+    #[must_use]
+    pub(crate) fn passage_to_plane(&self, ray: &InnerRay, index: u16) -> Option<Passage> {
+        let face = self.faces().get(usize::from(index))?;
+        let InnerRay { position, direction, .. } = *ray;
+        let approach = direction.dot(face.plane.normal);
+        let distance = (face.plane.offset - face.plane.normal.dot(position)) / approach;
+        (approach > LEAST_APPROACH).then(|| {
+            let end = face.plane.project(position + direction * distance);
+            let passage = Passage::straight(ray, end, index, face.plane.normal, face.far);
+            Passage { coating: face.coating, ..passage }
+        })
     }
 
     /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what

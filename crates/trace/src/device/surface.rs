@@ -3,7 +3,7 @@
 use super::{Coating, Convex, FarSide};
 use glam::DVec3;
 use optics::geometry::{
-    Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Lens, LensPart, Polyhedron,
+    Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Lens, LensPart, Plane, Polyhedron,
     Sphere, Wall,
 };
 use optics::propagation::Half;
@@ -130,6 +130,19 @@ impl Surface {
     #[must_use]
     pub fn mirror(wall: Wall) -> Self {
         Self::new(Shape::Sheet(wall), FarSide::Conductor)
+    }
+
+    /// The plane in which it lies, its normal pointing to behind it, if it is one that is met from
+    /// its front.
+    #[must_use]
+    pub fn plane(&self) -> Option<Plane> {
+        let (normal, point) = match &self.shape {
+            Shape::Wall(wall) => (-wall.normal, wall.ends()[0].extend(0.0)),
+            Shape::Cap(cap) => (-cap.normal, DVec3::Z * cap.z),
+            Shape::Disc(disc) => (-disc.normal, DVec3::Z * disc.z),
+            _ => return None,
+        };
+        Some(Plane { normal, offset: normal.dot(point) })
     }
 
     /// The distance, from zero on, at which a ray meets the surface and the unit normal there,

@@ -27,16 +27,16 @@ impl<'a, const N: usize, W: PathRecorder<N> + Clone> FourTracers<'a, N, W> {
     }
 
     /// Follows of four trees what comes of those branches, and of the launched rays themselves only
-    /// if `launched` says so. Group delays are not known then.
+    /// where `launched` says so. Group delays are not known then.
     pub fn trace_further_on(
         &mut self,
         launches: &[Launch<N>; 4],
-        launched: bool,
+        launched: [bool; 4],
         further_on: &[Vec<Branch<N>>; 4],
     ) {
         let mut branches = launches.each_ref().map(Branch::launched);
         let regions = std::array::from_fn(|i| {
-            self.tracers[i].begin_further_on(&mut branches[i], launched, &further_on[i])
+            self.tracers[i].begin_further_on(&mut branches[i], launched[i], &further_on[i])
         });
         self.follow(&mut branches, regions);
     }

@@ -22,6 +22,27 @@ pub trait PathRecorder<const N: usize> {
     #[inline(always)]
     fn begins(&mut self, _branch: &Branch<N>) {}
 
+    /// Called where a branch of that fingerprint has come through a homogeneous medium to that one of
+    /// the planes around it.
+    #[inline(always)]
+    fn arrives(&mut self, _path: u64, _face: u16) {}
+
+    /// To which of the planes around a homogeneous medium, as bits by their numbers, a branch of that
+    /// fingerprint is taken as if there were no others; `None`: to the one that it meets, and through
+    /// what else there is. Of the launched ray in air, 0: to which surfaces of devices, by the numbers
+    /// of [`first_surface`](Self::first_surface).
+    #[inline(always)]
+    fn planes(&self, _path: u64) -> Option<u64> {
+        None
+    }
+
+    /// The device and its plane surface of that number to which the launched ray is taken; `None`:
+    /// past all devices.
+    #[inline(always)]
+    fn first_surface(&self, _number: u16) -> Option<(u16, u16)> {
+        None
+    }
+
     /// Called where a branch of the fingerprint `from` goes on from a border, or starts, as one of
     /// the fingerprint `to`, given the power of its strongest polarization. Whether that is to be
     /// followed: else it is left out with all that comes of it, and is in no account.

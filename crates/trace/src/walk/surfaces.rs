@@ -124,6 +124,46 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
+    /// Whether a surface of a device lies in a plane.
+    #[must_use]
+    pub fn is_plane(&self, (device, surface): (u16, u16)) -> bool {
+        let surface = self.assembly.device(device).structure.surfaces.get(usize::from(surface));
+        surface.is_some_and(|surface| surface.plane().is_some())
+    }
+
+    /// Where a branch in air meets the plane of a surface.
+    pub(super) fn plane_surface_ahead(
+        &self,
+        branch: &Branch<N>,
+        (device, number): (u16, u16),
+    ) -> Option<SurfaceHit> {
+        let device = self.assembly.device(device);
+        let surface = device.structure.surfaces.get(usize::from(number))?;
+        let position = device.pose.to_local(branch.position);
+        let direction = device.pose.vector_to_local(branch.direction);
+        let distance = surface.plane()?.distance(position, direction)?;
+        Some(SurfaceHit {
+            surface: number,
+            distance,
+            outward: -surface.plane()?.normal,
+            far: surface.far,
+            coating: surface.coating,
+        })
+    }
+
+    /// Takes a branch in air to where it meets a surface of a device, and into that.
+    pub(super) fn come_to(
+        &mut self,
+        branch: &mut Branch<N>,
+        device: u16,
+        hit: &SurfaceHit,
+    ) -> bool {
+        branch.position += branch.direction * hit.distance;
+        branch.optical_path += hit.distance;
+        branch.met_device = true;
+        self.enter(branch, device, hit)
+    }
+
     /// Takes a branch in air that has come to a surface of a device into it.
     fn enter(&mut self, branch: &mut Branch<N>, number: u16, hit: &SurfaceHit) -> bool {
         let device = self.assembly.device(number);
@@ -254,7 +294,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let region = self.assembly.device(number).region(region_number);
         let way = passage.position - branch.position;
         let pulses = self.pulses(number);
-        let group = if self.wants_group_path(passage.optical_path) {
+        let is_back =
+            || self.recorder.planes(branch.path).is_some() && way.dot(branch.direction) < 0.0;
+        let group = if self.wants_group_path(passage.optical_path) && !is_back() {
             let (ray, field) = (branch.inner_ray(), branch.strongest_field());
             Some(region.group_path(&ray, field, passage, pulses))
         } else {

@@ -3,7 +3,7 @@
 use super::branch::{Branch, Place, largest};
 use super::coherence::Joining;
 use super::draw::{Draw, MOST_EVENTS_DRAWN};
-use super::{Coherence, Leaf, Outcome, PathRecorder};
+use super::{Coherence, Leaf, LeafEnd, Outcome, PathRecorder};
 use crate::assembly::{Assembly, Screen};
 use crate::device::{Dispersion, InnerRay, NoPassage, Passage};
 use glam::DVec3;
@@ -57,6 +57,9 @@ const MOST_POWER: f64 = 1e3;
 /// A branch that is taken further on than its ray starts may be so far out of its region, in terms
 /// of the tolerance.
 const MOST_BEYOND: f64 = 100.0;
+
+/// The fingerprint of the launched ray.
+const LAUNCHED: u64 = 0;
 
 /// What rounding leaves of a wave that is not there.
 const NO_POWER: f64 = 1e-24;
@@ -252,7 +255,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         for further_on in further_on {
             let Place::Region { device, region } = further_on.place else { continue };
             let region = self.assembly.device(device).region(region);
-            if region.is_within_faces(further_on.position, MOST_BEYOND * self.limits.tolerance) {
+            let beyond = MOST_BEYOND * self.limits.tolerance;
+            if self.recorder.planes(further_on.path).is_some()
+                || region.is_within_faces(further_on.position, beyond)
+            {
                 self.waiting.push(*further_on);
             } else {
                 self.lose(further_on.power);
@@ -338,19 +344,31 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             } else {
                 self.events += 1;
                 match branch.place {
-                    Place::Air => self.through_air(branch),
+                    Place::Air => match self.recorder.planes(branch.path) {
+                        Some(planes) if branch.path == LAUNCHED => {
+                            self.go_to_surfaces(branch, planes)
+                        }
+                        _ => self.through_air(branch),
+                    },
                     Place::Region { device, region: number } => {
                         let region = self.assembly.device(device).region(number);
-                        if region.takes_four() {
+                        if let Some(planes) = self.recorder.planes(branch.path) {
+                            self.go_to_planes(branch, (device, number), planes)
+                        } else if region.takes_four() {
                             return Some((device, number));
-                        }
-                        if region.is_homogeneous() {
-                            self.recorder.begins(branch);
-                        }
-                        !self.parts(branch, region) && {
-                            let ray = branch.inner_ray();
-                            let passage = self.advance((device, number), &ray);
-                            self.pass(branch, (device, number), passage.as_ref())
+                        } else {
+                            if region.is_homogeneous() {
+                                self.recorder.begins(branch);
+                            }
+                            !self.parts(branch, region) && {
+                                let ray = branch.inner_ray();
+                                let passage = self.advance((device, number), &ray);
+                                if let (false, Ok(passage)) = (region.faces().is_empty(), &passage)
+                                {
+                                    self.recorder.arrives(branch.path, passage.face);
+                                }
+                                self.pass(branch, (device, number), passage.as_ref())
+                            }
                         }
                     }
                 }
@@ -362,6 +380,65 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 self.take_next(branch)?;
             }
         }
+    }
+
+    /// Takes a branch to planes around its region, each as if it were alone, where it waits as what
+    /// goes on from there.
+    #[cold]
+    fn go_to_planes(&mut self, branch: &Branch<N>, place: (u16, u16), mut planes: u64) -> bool {
+        self.recorder.begins(branch);
+        let ray = branch.inner_ray();
+        let region = self.assembly.device(place.0).region(place.1);
+        if let Some(face) = self.plane_met(branch) {
+            self.recorder.arrives(branch.path, face);
+        }
+        while planes != 0 {
+            let passage = region.passage_to_plane(&ray, planes.trailing_zeros() as u16);
+            planes &= planes - 1;
+            let Some(passage) = passage else { continue };
+            let is_back = (passage.position - ray.position).dot(ray.direction) < 0.0;
+            let forwards = ray.wave_vector.dot(ray.direction) > 0.0;
+            if is_back && (self.group_delays || !forwards) {
+                // It would take another time than its path says.
+                continue;
+            }
+            let mut taken = *branch;
+            if self.pass(&mut taken, place, Ok(&passage)) {
+                self.waiting.push(taken);
+            }
+        }
+        false
+    }
+
+    /// Takes a launched ray in air to plane surfaces of devices, each as if it were alone, where it
+    /// waits as what goes on from there.
+    #[cold]
+    fn go_to_surfaces(&mut self, branch: &Branch<N>, mut numbers: u64) -> bool {
+        while numbers != 0 {
+            let surface = self.recorder.first_surface(numbers.trailing_zeros() as u16);
+            numbers &= numbers - 1;
+            let Some((device, surface)) = surface else {
+                self.leaves.push(branch.leaf(LeafEnd::Away));
+                continue;
+            };
+            if let Some(hit) = self.plane_surface_ahead(branch, (device, surface)) {
+                let mut taken = *branch;
+                if self.come_to(&mut taken, device, &hit) {
+                    self.waiting.push(taken);
+                }
+            }
+        }
+        false
+    }
+
+    /// Which of the planes around its region a branch meets, if its region is between planes.
+    #[must_use]
+    pub fn plane_met(&self, branch: &Branch<N>) -> Option<u16> {
+        let Place::Region { device, region } = branch.place else { return None };
+        if self.assembly.device(device).region(region).faces().is_empty() {
+            return None;
+        }
+        Some(self.advance((device, region), &branch.inner_ray()).ok()?.face)
     }
 
     /// Whether a branch is where it was when it was looked at before, with as much power.

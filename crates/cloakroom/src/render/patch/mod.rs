@@ -24,7 +24,8 @@ use grid::{Grid, LANES, MOST, Terms, bits};
 use instructions::Instructions;
 use smooth::{Functions, Rough, Smooth, smooth};
 use std::ops::Range;
-use ways::{LeftOut, ROOT, Trail, Ways};
+use std::sync::Arc;
+use ways::{Faces, LeftOut, ROOT, Start, Surfaces, Trail, Ways, has_face};
 
 /// Width and height of the largest patches, pixels.
 pub(super) const SIDE: usize = 32;
@@ -35,6 +36,10 @@ const LEAST_SIDE: usize = 2;
 /// Rays at the nodes are followed to this share of the least power, so that what is above it in one
 /// place of a patch is known in all.
 const DEEPER: f64 = 0.25;
+
+/// The same where rays are taken to faces that they do not meet: no other ways than known ones are
+/// followed there.
+const DEEPEST: f64 = 1e-3;
 
 /// They are traced so much more exactly, for errors of theirs are not smooth.
 const CLOSER: f64 = 0.2;
@@ -101,12 +106,16 @@ pub(super) enum Fit {
 #[derive(Clone, Debug)]
 struct Level<const N: usize> {
     patch: Patch,
-    /// The surface that its rays meet first.
-    surface: Option<(u16, u16)>,
+    /// The surfaces that its rays meet first.
+    surfaces: Surfaces,
     /// The leaves that are interpolated, those of larger patches that it is part of, too.
     leaves: Vec<Smooth<Leaf<N>>>,
     /// Whether rays are to be traced from their start on.
     launched: bool,
+    /// The surfaces between which they choose, as bits by their places, and those of them of which
+    /// alone they are to be traced.
+    faces: u64,
+    parting_faces: u64,
     /// The branches from which on they are, interpolated up to there.
     branches: Vec<Smooth<Branch<N>>>,
     /// What all rays have of what is met there.
@@ -134,6 +143,8 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     prepared: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
     scouts: FourTracers<'a, N, Trail<N>>,
+    /// They take rays to faces that others meet.
+    beside: FourTracers<'a, N, Trail<N>>,
     /// They trace what is not interpolated.
     tracers: FourTracers<'a, N, LeftOut>,
     /// Those of the smallest patches, of small ones and of others.
@@ -141,6 +152,8 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     /// Those that the processor has; they change no number.
     instructions: Instructions,
     functions: Functions<'a>,
+    /// Whether rays start in air.
+    in_air: bool,
     /// Whether rays go through graded media.
     graded: bool,
     rays_per_pixel: u32,
@@ -158,10 +171,24 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     further_on: [Vec<Branch<N>>; 4],
     /// Where those are among what is left out that stand for branches further on.
     met: [Vec<usize>; 4],
+    /// Of each branch of the patch above the rays that are followed from there, as bits.
+    followed: Vec<u64>,
+    /// The faces that rays choose at the ends of branches.
+    chosen: [Vec<Option<u16>>; 4],
     /// How many rays have been traced at nodes and between them.
     pub walks: f64,
     /// The leaves of the samples of a block, and what became of the rest.
     pub samples: [(Vec<Leaf<N>>, Outcome<N>); 4],
+}
+
+impl<const N: usize> Level<N> {
+    /// Whether a ray that meets that surface first is to be traced from its start on.
+    fn is_launched(&self, surface: Option<(u16, u16)>) -> bool {
+        let place = || self.surfaces.iter().position(|known| *known == surface);
+        self.launched
+            && (self.faces == 0
+                || place().is_some_and(|place| has_face(self.parting_faces, place as u16)))
+    }
 }
 
 impl<'a, const N: usize> LeafPatches<'a, N> {
@@ -173,6 +200,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         rays_per_pixel: u32,
     ) -> Option<Self> {
         let graded = prepared.assembly.is_graded();
+        let camera = &prepared.scene.camera;
         let exact = prepared.scene.trace.exact
             || prepared.coherence.is_some()
             || prepared.assembly.absorbs()
@@ -190,14 +218,17 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }
         let Limits { min_power, tolerance } = prepared.limits;
         let limits = Limits { min_power: DEEPER * min_power, tolerance: CLOSER * tolerance };
+        let beside = Limits { min_power: DEEPEST * min_power, ..limits };
         Some(Self {
             prepared,
             detection,
             scouts: FourTracers::new(&tracer.clone().within(limits).watched(Trail::default())),
+            beside: FourTracers::new(&tracer.clone().within(beside).watched(Trail::default())),
             tracers: FourTracers::new(&tracer.clone().watched(LeftOut::default())),
             grids,
             instructions: Instructions::new(),
             functions: Functions::of(prepared, detection),
+            in_air: matches!(prepared.assembly.region_around(camera.position, DVec3::X), Ok(None)),
             graded,
             rays_per_pixel,
             side,
@@ -208,6 +239,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             found: Vec::new(),
             further_on: std::array::from_fn(|_| Vec::new()),
             met: std::array::from_fn(|_| Vec::new()),
+            followed: Vec::new(),
+            chosen: std::array::from_fn(|_| Vec::new()),
             walks: 0.0,
             samples: std::array::from_fn(|_| (Vec::new(), Outcome::default())),
         })
@@ -249,9 +282,11 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         self.samples.iter_mut().for_each(|(leaves, _)| leaves.clear());
         let mut here = Level {
             patch,
-            surface: None,
+            surfaces: Surfaces::new(),
             leaves: Vec::new(),
             launched: true,
+            faces: 0,
+            parting_faces: 0,
             branches: Vec::new(),
             left_out: LeftOut::default(),
             traced: 1.0,
@@ -273,121 +308,353 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             })
             .collect();
         let any = &self.scouts.tracers[0];
-        let surface = |ray: &CameraRay| any.first_surface(ray.origin, ray.direction);
-        let met = surface(&rays[0]);
-        let beside = |ray: &CameraRay| surface(ray) == met;
-        let same = bits(rays.iter().enumerate().filter(|(_, ray)| beside(ray)).map(|(i, _)| i));
-        self.cuts = grid.cuts(same);
-        if same.count_ones() as usize != rays.len() {
-            return Fit::Shared;
+        let first: Vec<_> =
+            rays.iter().map(|ray| any.first_surface(ray.origin, ray.direction)).collect();
+        // What larger patches know holds on where their surfaces are met.
+        let above = self.levels.len().checked_sub(1).filter(|above| {
+            first.iter().all(|surface| self.levels[*above].surfaces.contains(surface))
+        });
+        let chooses = |above: &&Level<N>| !above.launched || above.faces != 0;
+        match above.map(|above| &self.levels[above]).filter(chooses) {
+            Some(above) => here.surfaces = above.surfaces.clone(),
+            None => {
+                for surface in &first {
+                    let is_new = !here.surfaces.contains(surface);
+                    if is_new && here.surfaces.try_push(*surface).is_err() {
+                        return Fit::Shared;
+                    }
+                }
+            }
         }
-        if met.is_none() {
+        let is_one = here.surfaces.len() == 1;
+        if is_one && here.surfaces[0].is_none() {
             return Fit::Alone;
         }
-        here.surface = met;
+        let beside = |ray: &usize| first[*ray] == first[0];
+        self.cuts = grid.cuts(bits((0..rays.len()).filter(beside)));
+        let are_planes = || here.surfaces.iter().flatten().all(|surface| any.is_plane(*surface));
+        if !(is_one || self.in_air && are_planes()) {
+            here.surfaces.clear();
+            return Fit::Shared;
+        }
         self.found.clear();
         self.ways.clear();
-        let above = self.levels.len().checked_sub(1);
-        let launched = above.is_none_or(|above| self.levels[above].launched);
+        self.followed.clear();
+        self.followed.resize(above.map_or(0, |above| self.levels[above].branches.len()), 0);
+        let is_launched = |surface: &Option<(u16, u16)>| {
+            above.is_none_or(|above| self.levels[above].is_launched(*surface))
+        };
+        let launched: Vec<bool> = first.iter().map(is_launched).collect();
         for tracer in &mut self.scouts.tracers {
             let left_out = above.map(|above| self.levels[above].left_out.clone());
             tracer.recorder().left_out = left_out.unwrap_or_default();
         }
         let share = above.map_or(1.0, |above| self.levels[above].traced);
         for (number, four) in rays.chunks(4).enumerate() {
-            let first = 4 * number;
+            let at = 4 * number;
             let ray = |i: usize| i.min(four.len() - 1);
             let launches = std::array::from_fn(|i| self.detection.launch(camera, &four[ray(i)]));
             let grid = self.grid(here.patch);
-            let points = std::array::from_fn(|i| here.patch.point(grid.points[first + ray(i)]));
-            self.go_further_on(above, &points, DEEPER * self.prepared.limits.min_power);
-            self.scouts.trace_further_on(&launches, launched, &self.further_on);
+            let points = std::array::from_fn(|i| here.patch.point(grid.points[at + ray(i)]));
+            let surfaces = std::array::from_fn(|i| first[at + ray(i)]);
+            let least = DEEPER * self.prepared.limits.min_power;
+            self.go_further_on(above, &points, &surfaces, least);
+            let launched_here = std::array::from_fn(|i| launched[at + ray(i)]);
+            self.scouts.trace_further_on(&launches, launched_here, &self.further_on);
             self.walks += four.len() as f64 * share;
             for (i, tracer) in self.scouts.tracers.iter_mut().enumerate() {
                 if i < four.len() {
-                    self.ways.add(first + i, tracer.recorder());
+                    self.ways.add(at + i, tracer.recorder());
+                    for branch in &self.further_on[i] {
+                        let branches = above.map_or(&[][..], |above| &self.levels[above].branches);
+                        let is_it = |known: &Smooth<Branch<N>>| known.first.path == branch.path;
+                        if let Some(number) = branches.iter().position(is_it) {
+                            self.followed[number] |= 1 << (at + i);
+                        }
+                    }
                 }
                 tracer.recorder().clear();
                 let (leaves, outcome) = tracer.traced();
                 if outcome.stats != TraceStats::default() {
-                    // Light without end is told of in the picture's account, and takes its time.
-                    return Fit::Alone;
+                    let Some(above) = above else {
+                        // Light without end is told of in the picture's account, and takes its time.
+                        return Fit::Alone;
+                    };
+                    // What is known of the larger patch holds for its parts.
+                    let patch = here.patch;
+                    let coefficients = here.coefficients;
+                    *here = Level { patch, coefficients, ..self.levels[above].clone() };
+                    for tracer in &mut self.tracers.tracers {
+                        tracer.recorder().clone_from(&here.left_out);
+                    }
+                    return Fit::Shared;
                 }
                 if i < four.len() {
-                    self.found.extend(leaves.iter().map(|leaf| (first + i, *leaf)));
+                    self.found.extend(leaves.iter().map(|leaf| (at + i, *leaf)));
                 }
             }
-            if number == 0 && !self.graded && above.is_none() && self.found.len() == 4 {
+            let looked_at = if is_one { 4 } else { rays.len() };
+            if at + four.len() == looked_at
+                && !self.graded
+                && above.is_none()
+                && self.found.len() == looked_at
+            {
                 // One branch in closed form is quicker than any polynomial.
                 return Fit::Alone;
             }
         }
-        self.gather(here, rays.len());
+        if !is_one {
+            for (ray, surface) in first.iter().enumerate().filter(|(ray, _)| launched[*ray]) {
+                let number = here.surfaces.iter().position(|known| known == surface);
+                self.ways.launch(ray, number.map_or(u16::MAX, |number| number as u16));
+            }
+        }
+        let faces = self.look_beside(here, above, &rays);
+        let launched = bits((0..rays.len()).filter(|ray| launched[*ray]));
+        self.gather(here, above, (rays.len(), launched), faces.as_deref());
         Fit::Shared
     }
 
+    /// Where rays part because they meet different faces, takes each of them to those that others
+    /// meet, so that what comes of each face is known for all: the faces.
+    fn look_beside(
+        &mut self,
+        here: &Level<N>,
+        above: Option<usize>,
+        rays: &[CameraRay],
+    ) -> Option<Arc<Faces>> {
+        let least = self.prepared.limits.min_power;
+        let faces = Arc::new(self.ways.faces(&here.surfaces, least)?);
+        let above = above.map_or(&[][..], |above| &self.levels[above].branches);
+        let is_followed = |number: usize, ray: usize| self.followed[number] >> ray & 1 == 1;
+        let some_follow = |(number, branch): (usize, &Smooth<Branch<N>>)| {
+            faces.of(branch.first.path) != 0 && (0..rays.len()).any(|ray| !is_followed(number, ray))
+        };
+        if !faces.are_several() && !above.iter().enumerate().any(some_follow) {
+            return Some(faces);
+        }
+        let borders = (self.ways.steps() as f64 / rays.len() as f64).max(1.0);
+        let before = self.ways.steps();
+        let camera = &self.prepared.scene.camera;
+        for (number, four) in rays.chunks(4).enumerate() {
+            let at = 4 * number;
+            let ray = |i: usize| i.min(four.len() - 1);
+            let launches = std::array::from_fn(|i| self.detection.launch(camera, &four[ray(i)]));
+            for i in 0..4 {
+                let ray = at + ray(i);
+                let further_on = &mut self.further_on[i];
+                further_on.clear();
+                self.ways.with_others_beside(&faces, ray, further_on);
+                let point = here.patch.point(self.grids[grid_of(here.patch)].points[ray]);
+                let mut terms = TermsOfLevels::at(point);
+                for (number, smooth) in above.iter().enumerate() {
+                    if !is_followed(number, ray) && faces.beside(smooth.first.path, ray) != 0 {
+                        let mut branch = smooth.first;
+                        let terms = terms.of(&self.levels, smooth.level);
+                        smooth.move_to(&mut branch, terms, self.functions, &self.coefficients);
+                        further_on.push(branch);
+                    }
+                }
+                let beside = Some((Arc::clone(&faces), ray));
+                self.beside.tracers[i].recorder().beside = beside;
+            }
+            let launched = std::array::from_fn(|i| faces.beside(ROOT, at + ray(i)) != 0);
+            self.beside.trace_further_on(&launches, launched, &self.further_on);
+            for (i, tracer) in self.beside.tracers.iter_mut().enumerate() {
+                if i < four.len() {
+                    self.ways.add(at + i, tracer.recorder());
+                    let (leaves, _) = tracer.traced();
+                    self.found.extend(leaves.iter().map(|leaf| (at + i, *leaf)));
+                }
+                tracer.recorder().clear();
+            }
+        }
+        self.walks += (self.ways.steps() - before) as f64 / borders;
+        Some(faces)
+    }
+
     /// Puts the branches in place from which on four rays of a patch, of that level or a part of
-    /// it, are followed, if they are strong enough: none without a level.
-    fn go_further_on(&mut self, level: Option<usize>, points: &[[f64; 2]; 4], least: f64) {
+    /// it, are followed, if they are strong enough: none without a level. Whether they come to known
+    /// faces where they choose between them.
+    fn go_further_on(
+        &mut self,
+        level: Option<usize>,
+        points: &[[f64; 2]; 4],
+        first_surfaces: &[Option<(u16, u16)>; 4],
+        least: f64,
+    ) -> bool {
+        let mut all_known = true;
         let branches = level.map_or(&[][..], |level| &self.levels[level].branches);
+        let known = level.map(|level| &self.levels[level].surfaces);
         for (i, point) in points.iter().enumerate() {
             let (further_on, met) = (&mut self.further_on[i], &mut self.met[i]);
+            let chosen = &mut self.chosen[i];
             further_on.clear();
             met.clear();
+            chosen.clear();
+            // The launched ray comes before all others.
+            let is_met = |surface: &Option<(u16, u16)>| *surface == first_surfaces[i];
+            let first = known.and_then(|known| known.iter().position(is_met));
+            chosen.push(first.map(|first| first as u16));
             let mut terms = TermsOfLevels::at(*point);
             for smooth in branches {
+                chosen.push(None);
+                if smooth
+                    .given
+                    .is_some_and(|(_, face)| chosen.get(smooth.chooser) != Some(&Some(face)))
+                {
+                    continue;
+                }
                 further_on.push(smooth.first);
                 let Some(branch) = further_on.last_mut() else { break };
                 let terms = terms.of(&self.levels, smooth.level);
+                let mut is_known = true;
+                if smooth.faces != 0 {
+                    smooth.point_from(branch, terms, &self.coefficients);
+                    let face = self.tracers.tracers[0].plane_met(branch);
+                    let face = face.filter(|face| has_face(smooth.faces, *face));
+                    if let Some(last) = chosen.last_mut() {
+                        *last = face;
+                    }
+                    if face.is_some_and(|face| !has_face(smooth.parting_faces, face)) {
+                        further_on.pop();
+                        continue;
+                    }
+                    is_known = face.is_some();
+                }
                 smooth.move_to(branch, terms, self.functions, &self.coefficients);
                 if branch.largest_power() < least {
                     further_on.pop();
                     continue;
                 }
+                all_known &= is_known;
                 branch.survive(least);
                 met.extend(smooth.met.map(|_| smooth.place));
             }
         }
+        all_known
     }
 
     /// Finds out what rays of a patch share, of what so many of them have been found to meet.
-    fn gather(&mut self, here: &mut Level<N>, rays: usize) {
+    fn gather(
+        &mut self,
+        here: &mut Level<N>,
+        above: Option<usize>,
+        (rays, launched): (usize, u64),
+        faces: Option<&Faces>,
+    ) {
         let least = self.prepared.limits.min_power;
         let level = self.levels.len();
-        let (mut leaves, mut branches) = match self.levels.last() {
+        let above = above.map(|above| &self.levels[above]);
+        let (mut leaves, mut branches) = match above {
             Some(above) => (above.leaves.clone(), above.branches.clone()),
             None => (Vec::new(), Vec::new()),
         };
-        let launched = self.levels.last().is_none_or(|above| above.launched);
-        let starts = launched.then_some(ROOT).into_iter();
-        let starts = starts.chain(branches.iter().map(|branch| branch.first.path));
-        self.ways.gather(rays, starts, least);
-        // What larger patches know holds on where all rays still come to it.
-        let lost = |ways: &Ways<N>, met: Option<u64>| met.is_some_and(|path| !ways.has(path));
-        while let Some(number) = branches.iter().position(|branch| lost(&self.ways, branch.met)) {
-            self.ways.forget(branches.remove(number).first.path);
+        let is_launched = above.is_none_or(|above| above.launched);
+        let known_borders = above.and_then(|above| above.borders);
+        if let Some(above) = above.filter(|above| !above.launched || above.faces != 0) {
+            (here.faces, here.parting_faces) = (above.faces, above.parting_faces);
         }
-        leaves.retain(|leaf| !lost(&self.ways, leaf.met));
+        let root = Start { path: ROOT, rays: launched, faces: here.faces };
+        let starts = is_launched.then_some(root).into_iter();
+        let starts = starts.chain(branches.iter().zip(&self.followed).map(|(branch, rays)| {
+            Start { path: branch.first.path, rays: *rays, faces: branch.faces }
+        }));
+        self.ways.gather(rays, starts, faces, least);
+        self.ways.drop_lost(&mut leaves, &mut branches);
         self.fit_leaves(here.patch, level, &mut leaves);
         self.fit_branches(here.patch, level, &mut branches);
+        // Rays may part where they were thought to choose.
+        self.ways.drop_lost(&mut leaves, &mut branches);
+        let ways = &self.ways;
         let starts: Vec<(u64, Option<u64>)> =
             branches.iter().map(|branch| (branch.first.path, branch.met)).collect();
-        branches.retain(|branch| self.ways.parts(branch.first.path));
+        let given_before: Vec<(u64, Option<(u64, u16)>)> =
+            branches.iter().map(|branch| (branch.first.path, branch.given)).collect();
+        let faces_of = |path: u64, known: Option<[u64; 2]>| {
+            let (chosen, parting) = (ways.chooses(path), ways.parting_faces(path));
+            let found = faces.map_or(0, |faces| faces.of(path));
+            match known {
+                Some([all, before]) if chosen != 0 => {
+                    [all | chosen, before & !found | parting & found]
+                }
+                Some([all, before]) => [all, before | found & all],
+                None => [chosen, parting],
+            }
+        };
+        if is_launched {
+            let known = Some([here.faces, here.parting_faces]).filter(|_| here.faces != 0);
+            [here.faces, here.parting_faces] = faces_of(ROOT, known);
+        }
+        for branch in &mut branches {
+            let known = [branch.faces, branch.parting_faces];
+            let known = Some(known).filter(|_| branch.level < level && branch.faces != 0);
+            [branch.faces, branch.parting_faces] = faces_of(branch.first.path, known);
+        }
+        branches.retain(|branch| {
+            let path = branch.first.path;
+            branch.faces != 0 || ways.parts(path) && (branch.level < level || ways.has(path))
+        });
+        branches.sort_by_key(|branch| {
+            (branch.level, if branch.level == level { ways.depth(branch.first.path) } else { 0 })
+        });
+        let paths: Vec<u64> = branches.iter().map(|branch| branch.first.path).collect();
+        let past_all = here.surfaces.iter().position(Option::is_none);
+        // Of a launched ray that is traced, so is the leaf without a device.
+        let is_traced = past_all
+            .is_none_or(|place| here.faces == 0 || has_face(here.parting_faces, place as u16));
+        leaves.retain(|leaf| match leaf.first.path {
+            ROOT => !is_traced,
+            path => leaf.level < level || ways.has(path),
+        });
+        let given = |path: u64| match ways.chosen_on_the_way(path) {
+            Err(ROOT) if path == ROOT => Some((ROOT, past_all? as u16)),
+            Ok(chosen) => Some(chosen),
+            Err(start) => given_before.iter().find(|(path, _)| *path == start)?.1,
+        };
+        let number_of = |given: Option<(u64, u16)>| {
+            let is_it = |path: &u64| given.is_some_and(|(chooser, _)| *path == chooser);
+            match given {
+                Some((ROOT, _)) => 0,
+                _ => paths.iter().position(is_it).map_or(usize::MAX, |number| 1 + number),
+            }
+        };
+        for branch in &mut branches {
+            if branch.level == level {
+                branch.given = given(branch.first.path);
+            }
+            branch.chooser = number_of(branch.given);
+        }
+        for leaf in &mut leaves {
+            if leaf.level == level {
+                leaf.given = given(leaf.first.path);
+            }
+            leaf.chooser = number_of(leaf.given);
+        }
         for part in self.ways.some_have() {
             let cuts = self.grid(here.patch).cuts(part);
             self.cuts = [0, 1].map(|axis| self.cuts[axis] + cuts[axis]);
         }
-        let borders = self.levels.last().and_then(|above| above.borders);
-        let borders = borders.unwrap_or_else(|| self.ways.borders());
+        let borders = known_borders.unwrap_or_else(|| self.ways.borders());
         here.borders = Some(borders);
         here.traced = (self.ways.borders_to_trace() / borders).min(1.0);
-        here.launched = self.ways.parts(ROOT);
+        here.launched = match here.faces {
+            0 => self.ways.parts(ROOT),
+            _ => here.parting_faces != 0,
+        };
         here.left_out = LeftOut::new(self.ways.met());
         let met_before = |mut path: u64| loop {
             match self.ways.met_on_the_way(path) {
                 Ok(met) => return Some(met),
                 // What is before it larger patches know.
-                Err(start) => path = starts.iter().find(|(path, _)| *path == start)?.1?,
+                Err(start) => {
+                    let met = starts.iter().find(|(path, _)| *path == start)?.1?;
+                    if met == path {
+                        // No ray of the patch comes there.
+                        return Some(met);
+                    }
+                    path = met;
+                }
             }
         };
         let find = |path: u64, level_of: usize, known: Option<u64>| {
@@ -415,6 +682,11 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let path = way[0].0;
             let power = way.iter().map(|(.., leaf)| leaf.largest_power()).fold(0.0, f64::max);
             if power < self.prepared.limits.min_power || !self.ways.has(path) {
+                continue;
+            }
+            if path != ROOT && self.ways.chooses(path) != 0 {
+                // At some face it ends.
+                self.ways.part_at(path);
                 continue;
             }
             // Were there two of a ray, they would be no function.
@@ -474,20 +746,21 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     /// Finds the leaves of the rays of a block of the patch that was fitted last; whether its rays
     /// are like those of the patch, and nothing rare has come of them.
     pub fn sample(&mut self, points: &[[f64; 2]; 4], rays: &[CameraRay; 4]) -> bool {
-        let Some(Level { surface, traced, launched, .. }) = self.levels.last() else {
-            return false;
-        };
-        let (is_traced, launched) = (*traced > 0.0, *launched);
+        let Some(here) = self.levels.last() else { return false };
+        let is_traced = here.launched || !here.branches.is_empty() || here.faces != 0;
         let tracer = &self.tracers.tracers[0];
-        let met = |ray: &CameraRay| tracer.first_surface(ray.origin, ray.direction) == *surface;
-        if !rays.iter().all(met) {
+        let met = rays.each_ref().map(|ray| tracer.first_surface(ray.origin, ray.direction));
+        if !met.iter().all(|surface| here.surfaces.contains(surface)) {
             return false;
         }
+        let launched = met.map(|surface| here.is_launched(surface));
         if is_traced {
             let level = self.levels.len().checked_sub(1);
             let least = self.prepared.limits.min_power;
             let instructions = self.instructions;
-            instructions.with(|| self.go_further_on(level, points, least));
+            if !instructions.with(|| self.go_further_on(level, points, &met, least)) {
+                return false;
+            }
             let camera = &self.prepared.scene.camera;
             self.tracers.tracers.iter_mut().for_each(|tracer| tracer.recorder().begin());
             let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
@@ -497,8 +770,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let mut as_traced = true;
         for (i, (leaves, outcome)) in samples.iter_mut().enumerate() {
             *outcome = Outcome::default();
-            let traced = is_traced.then_some(i);
-            as_traced &= self.instructions.with(|| self.interpolated(points[i], traced, leaves));
+            as_traced &= self.instructions.with(|| self.interpolated(points[i], i, leaves));
             if is_traced {
                 let (others, outcome) = self.tracers.tracers[i].traced();
                 leaves.extend_from_slice(others);
@@ -520,17 +792,18 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     /// The leaves at a point of the picture that are interpolated and strong enough; whether the
     /// ray of that number in its block, if it is traced, has met what is left out of it for them.
     #[inline(always)]
-    fn interpolated(
-        &self,
-        point: [f64; 2],
-        traced: Option<usize>,
-        leaves: &mut Vec<Leaf<N>>,
-    ) -> bool {
+    fn interpolated(&self, point: [f64; 2], ray: usize, leaves: &mut Vec<Leaf<N>>) -> bool {
         let Some(here) = self.levels.last() else { return false };
         let least = self.prepared.limits.min_power;
         let mut terms = TermsOfLevels::at(point);
         let (mut as_traced, mut count) = (true, 0);
         for smooth in &here.leaves {
+            if smooth
+                .given
+                .is_some_and(|(_, face)| self.chosen[ray].get(smooth.chooser) != Some(&Some(face)))
+            {
+                continue;
+            }
             let terms = terms.of(&self.levels, smooth.level);
             // Leaves are large: those of the last sample stay where they are, and are moved.
             if leaves.get(count).is_none_or(|leaf| leaf.path != smooth.first.path) {
@@ -544,7 +817,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             }
             count += 1;
             leaf.survives_alone = leaf.power.map(|power| power >= least);
-            if let (Some(ray), Some(_)) = (traced, smooth.met) {
+            if smooth.met.is_some() {
                 as_traced &= self.tracers.tracers[ray].watcher().has_met(smooth.place);
             }
         }

@@ -46,6 +46,15 @@ pub(super) struct Smooth<T> {
     pub met: Option<u64>,
     /// Where that is among those that are left out.
     pub place: usize,
+    /// The last branch on the way to it at whose end rays choose between faces, and the face that
+    /// leads on.
+    pub given: Option<(u64, u16)>,
+    /// The number of that branch.
+    pub chooser: usize,
+    /// The faces between which rays choose at its own end, as bits by their numbers.
+    pub faces: u64,
+    /// Those of them at which rays part nevertheless.
+    pub parting_faces: u64,
 }
 
 impl<T: Interpolated> Smooth<T> {
@@ -68,6 +77,16 @@ impl<T: Interpolated> Smooth<T> {
             *values = lane(number);
         }
         thing.put(kept, &lanes);
+    }
+}
+
+impl<const N: usize> Smooth<Branch<N>> {
+    /// As [`Self::move_to`], but for its place and direction alone.
+    #[inline(always)]
+    pub fn point_from(&self, branch: &mut Branch<N>, at: &Terms, coefficients: &[[f64; LANES]]) {
+        let numbers = at.sum(&coefficients[self.start..self.start + self.terms]);
+        branch.position = DVec3::from_slice(&numbers[..3]);
+        branch.direction = DVec3::from_slice(&numbers[3..6]).normalize();
     }
 }
 
@@ -336,7 +355,18 @@ pub(super) fn smooth<T: Interpolated>(
     let terms = terms(&lanes, &first.tolerances(kept, power));
     let start = coefficients.len();
     coefficients.extend(lanes.iter().flat_map(|lane| &lane[..terms]));
-    let smooth = Smooth { first: *first, level, start, terms, met: None, place: 0 };
+    let smooth = Smooth {
+        first: *first,
+        level,
+        start,
+        terms,
+        met: None,
+        place: 0,
+        given: None,
+        chooser: 0,
+        faces: 0,
+        parting_faces: 0,
+    };
     let mut between = found[nodes..].iter().peekable();
     let is_smooth = (nodes..).zip(&grid.checks).all(|(number, at)| {
         let mut here = *first;

@@ -1,7 +1,10 @@
 //! The ways that the rays of a patch take, and where they part.
 
 use super::grid::bits;
-use crate::trace::{Branch, PathRecorder, PathSegment};
+use super::smooth::Smooth;
+use crate::trace::{Branch, Leaf, PathRecorder, PathSegment};
+use arrayvec::ArrayVec;
+use std::sync::Arc;
 
 /// A branch that goes on from a border, of one ray.
 #[derive(Clone, Copy, Debug)]
@@ -10,6 +13,65 @@ struct Step {
     from: u64,
     power: f64,
     ray: usize,
+    /// Whether the ray has it, and not only would, did it meet another face.
+    is_real: bool,
+}
+
+/// A branch, by its fingerprint, that comes to a face, of one ray.
+#[derive(Clone, Copy, Debug)]
+struct Arrival {
+    path: u64,
+    face: u16,
+    ray: usize,
+}
+
+/// Whether a face is among some, given as bits by their numbers.
+#[inline]
+pub(super) fn has_face(faces: u64, face: u16) -> bool {
+    faces.checked_shr(face.into()).is_some_and(|faces| faces & 1 == 1)
+}
+
+/// The faces to which branches come, each by all rays that have it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Faces {
+    /// Of each branch, by its fingerprint, the faces as bits by their numbers.
+    met: Vec<(u64, u64)>,
+    /// Those that lead on.
+    leading: Vec<(u64, u64)>,
+    /// Of each branch and ray, the one that the ray meets.
+    of_rays: Vec<(u64, usize, u16)>,
+    /// The branches that come of them.
+    known: Vec<u64>,
+    first_surfaces: Surfaces,
+}
+
+impl Faces {
+    /// Those to which rays come at the end of a branch, as bits by their numbers.
+    pub fn of(&self, path: u64) -> u64 {
+        among(&self.met, path)
+    }
+
+    /// Whether rays come to several at the end of any branch.
+    pub fn are_several(&self) -> bool {
+        self.met.iter().any(|(_, faces)| faces.count_ones() > 1)
+    }
+
+    /// Those that lead on and are not met by a ray.
+    pub fn beside(&self, path: u64, ray: usize) -> u64 {
+        let leading = among(&self.leading, path);
+        if leading == 0 {
+            return 0;
+        }
+        let key = |(path, ray, _): &(u64, usize, u16)| (*path, *ray);
+        let own = self.of_rays.binary_search_by_key(&(path, ray), key);
+        leading & !own.map_or(0, |place| 1 << self.of_rays[place].2)
+    }
+}
+
+/// What is known of a branch, given by its fingerprint, among others that are in order.
+fn among(faces: &[(u64, u64)], path: u64) -> u64 {
+    let found = faces.binary_search_by_key(&path, |(path, _)| *path);
+    found.map_or(0, |place| faces[place].1)
 }
 
 /// Notes where the branches of a ray go on, and those that may be followed from further on.
@@ -17,13 +79,26 @@ struct Step {
 pub(super) struct Trail<const N: usize> {
     steps: Vec<Step>,
     branches: Vec<Branch<N>>,
+    arrivals: Vec<Arrival>,
     /// What is not looked at.
     pub left_out: LeftOut,
+    /// The faces to which a ray is taken, where it does not meet them, and its number.
+    pub beside: Option<(Arc<Faces>, usize)>,
 }
+
+/// The surfaces that rays meet first: each a device and its surface; `None` past all devices. Where
+/// there are several they are the faces to which the launched ray comes, by their places here.
+pub(super) type Surfaces = ArrayVec<Option<(u16, u16)>, 8>;
 
 impl<const N: usize> Default for Trail<N> {
     fn default() -> Self {
-        Self { steps: Vec::new(), branches: Vec::new(), left_out: LeftOut::default() }
+        Self {
+            steps: Vec::new(),
+            branches: Vec::new(),
+            arrivals: Vec::new(),
+            left_out: LeftOut::default(),
+            beside: None,
+        }
     }
 }
 
@@ -31,6 +106,7 @@ impl<const N: usize> Trail<N> {
     pub fn clear(&mut self) {
         self.steps.clear();
         self.branches.clear();
+        self.arrivals.clear();
     }
 }
 
@@ -45,8 +121,30 @@ impl<const N: usize> PathRecorder<N> for Trail<N> {
         }
     }
 
+    fn arrives(&mut self, path: u64, face: u16) {
+        // A ray that starts in a medium goes on from there.
+        if path != ROOT {
+            self.arrivals.push(Arrival { path, face, ray: 0 });
+        }
+    }
+
+    #[inline]
+    fn planes(&self, path: u64) -> Option<u64> {
+        self.beside.as_ref().map(|(faces, ray)| faces.beside(path, *ray))
+    }
+
+    fn first_surface(&self, number: u16) -> Option<(u16, u16)> {
+        let (faces, _) = self.beside.as_ref()?;
+        faces.first_surfaces.get(usize::from(number)).copied().flatten()
+    }
+
     fn went_on(&mut self, from: u64, to: u64, power: f64) -> bool {
-        self.steps.push(Step { to, from, power, ray: 0 });
+        if let Some((faces, _)) = &self.beside
+            && faces.known.binary_search(&to).is_err()
+        {
+            return false;
+        }
+        self.steps.push(Step { to, from, power, ray: 0, is_real: self.beside.is_none() });
         !self.left_out.has(to)
     }
 }
@@ -59,10 +157,29 @@ struct Beginning {
     from: u64,
     /// The rays that have it, as bits.
     rays: u64,
-    /// Whether all rays of the patch have it.
+    /// Those, and the ones that would have it if they met other faces.
+    all_rays: u64,
+    /// Whether all rays of the patch have it, or would.
     shared: bool,
     /// Whether rays part at its end.
     parts: bool,
+    /// The faces that are known, as bits by their numbers, where it is a function of the place all
+    /// the same what comes of each of them: a ray has what comes of the one that it meets.
+    faces: u64,
+    /// Those at which rays part nevertheless.
+    parting_faces: u64,
+    /// The face of the branch before from which it comes.
+    from_face: Option<u16>,
+}
+
+/// A branch with which rays start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    pub path: u64,
+    /// The rays that have been followed from there, as bits.
+    pub rays: u64,
+    /// The faces between which rays are known to choose at its end.
+    pub faces: u64,
 }
 
 /// The tree of all ways that the rays of a patch take.
@@ -72,13 +189,21 @@ pub(super) struct Ways<const N: usize> {
     beginnings: Vec<Beginning>,
     /// The branches that may be followed from further on, each of one ray.
     branches: Vec<(usize, Branch<N>)>,
+    /// The faces that are met, by rays and by those that are taken to others.
+    arrivals: [Vec<Arrival>; 2],
     /// How many rays there are.
     rays: usize,
 }
 
 impl<const N: usize> Default for Ways<N> {
     fn default() -> Self {
-        Self { steps: Vec::new(), beginnings: Vec::new(), branches: Vec::new(), rays: 0 }
+        Self {
+            steps: Vec::new(),
+            beginnings: Vec::new(),
+            branches: Vec::new(),
+            arrivals: [Vec::new(), Vec::new()],
+            rays: 0,
+        }
     }
 }
 
@@ -90,39 +215,154 @@ impl<const N: usize> Ways<N> {
         self.steps.clear();
         self.beginnings.clear();
         self.branches.clear();
+        self.arrivals.iter_mut().for_each(Vec::clear);
     }
 
     /// Takes in what a ray has noted.
     pub fn add(&mut self, ray: usize, trail: &mut Trail<N>) {
+        let arrivals = &mut self.arrivals[usize::from(trail.beside.is_some())];
+        arrivals.extend(trail.arrivals.drain(..).map(|arrival| Arrival { ray, ..arrival }));
         self.steps.extend(trail.steps.drain(..).map(|step| Step { ray, ..step }));
         self.branches.extend(trail.branches.drain(..).map(|branch| (ray, branch)));
     }
 
+    /// Takes in which of several surfaces a launched ray meets.
+    pub fn launch(&mut self, ray: usize, surface: u16) {
+        let arrival = Arrival { path: ROOT, face: surface, ray };
+        self.arrivals.iter_mut().for_each(|arrivals| arrivals.push(arrival));
+    }
+
+    /// How many branches are known, of all rays together.
+    pub fn steps(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The faces to which branches come of the rays that have been added, and what comes of them of at least that
+    /// power.
+    pub fn faces(&mut self, first_surfaces: &Surfaces, least_power: f64) -> Option<Faces> {
+        let mut of_rays: Vec<(u64, usize, u16)> = self.arrivals[0]
+            .iter()
+            .map(|Arrival { path, face, ray }| (*path, *ray, *face))
+            .collect();
+        of_rays.sort_unstable();
+        let mut met: Vec<(u64, u64)> = Vec::new();
+        for same in of_rays.chunk_by(|(one, ..), (other, ..)| one == other) {
+            // Of a branch that crosses seams there is more than one of a ray.
+            let is_once = same.windows(2).all(|two| two[0].1 != two[1].1);
+            if is_once && same.iter().all(|(.., face)| u64::from(*face) < u64::from(u64::BITS)) {
+                met.push((same[0].0, bits(same.iter().map(|(.., face)| usize::from(*face)))));
+            }
+        }
+        if met.is_empty() {
+            return None;
+        }
+        self.steps.sort_unstable_by_key(|step| step.to);
+        let (mut known, mut leading) = (Vec::new(), Vec::new());
+        for same in self.steps.chunk_by(|one, other| one.to == other.to) {
+            if same.iter().any(|step| step.power >= least_power) {
+                let Step { to, from, ray, .. } = same[0];
+                known.push(to);
+                let key = |(path, ray, _): &(u64, usize, u16)| (*path, *ray);
+                if let Ok(place) = of_rays.binary_search_by_key(&(from, ray), key)
+                    && among(&met, from) != 0
+                {
+                    leading.push((from, 1 << of_rays[place].2));
+                }
+            }
+        }
+        if let Some(place) = first_surfaces.iter().position(Option::is_none) {
+            // Past all devices there is a leaf.
+            leading.push((ROOT, 1 << place & among(&met, ROOT)));
+        }
+        leading.sort_unstable();
+        leading.dedup_by(|later, first| {
+            let same = later.0 == first.0;
+            if same {
+                first.1 |= later.1;
+            }
+            same
+        });
+        Some(Faces { met, leading, of_rays, known, first_surfaces: first_surfaces.clone() })
+    }
+
+    /// The branches of a ray that come to a face where others come to other ones.
+    pub fn with_others_beside(&self, faces: &Faces, ray: usize, found: &mut Vec<Branch<N>>) {
+        let own = self.branches.iter().filter(|(of, _)| *of == ray).map(|(_, branch)| branch);
+        found.extend(own.filter(|branch| faces.beside(branch.path, ray) != 0));
+    }
+
     /// Puts the tree together, of so many rays, which have been followed from the starts on. Where
     /// it is not the same for all of them, rays part, but for branches below `least_power` in all.
-    pub fn gather(&mut self, rays: usize, starts: impl Iterator<Item = u64>, least_power: f64) {
+    pub fn gather(
+        &mut self,
+        rays: usize,
+        starts: impl Iterator<Item = Start>,
+        faces: Option<&Faces>,
+        least_power: f64,
+    ) {
         self.rays = rays;
         let all = bits(0..rays);
+        let beginning = |path: u64, from: u64, [rays, all_rays]: [u64; 2], faces: u64| Beginning {
+            path,
+            from,
+            rays,
+            all_rays,
+            shared: all_rays == all,
+            parts: false,
+            faces,
+            parting_faces: 0,
+            from_face: None,
+        };
         self.steps.sort_unstable_by_key(|step| step.to);
         for same in self.steps.chunk_by(|one, other| one.to == other.to) {
             let power = same.iter().map(|step| step.power).fold(0.0, f64::max);
             if power >= least_power {
-                let Step { to: path, from, .. } = same[0];
-                let rays = bits(same.iter().map(|step| step.ray));
-                let shared = rays == all;
-                self.beginnings.push(Beginning { path, from, rays, shared, parts: false });
+                let real = bits(same.iter().filter(|step| step.is_real).map(|step| step.ray));
+                let rays = [real, bits(same.iter().map(|step| step.ray))];
+                self.beginnings.push(beginning(same[0].to, same[0].from, rays, 0));
             }
         }
         // Rays may come to what they also start with.
-        let start = |path| Beginning { path, from: path, rays: all, shared: true, parts: false };
-        let others: Vec<_> = starts.filter(|path| self.find(*path).is_none()).map(start).collect();
-        self.beginnings.extend(others);
-        self.beginnings.sort_unstable_by_key(|beginning| beginning.path);
-        for number in 0..self.beginnings.len() {
-            let Beginning { from, shared, .. } = self.beginnings[number];
-            if !shared {
-                self.part_at(from);
+        let found = self.beginnings.len();
+        for Start { path, rays, faces } in starts {
+            // The steps are in order.
+            match self.beginnings[..found].binary_search_by_key(&path, |known| known.path) {
+                Ok(number) => self.beginnings[number].faces = faces,
+                Err(_) => self.beginnings.push(beginning(path, path, [rays, all], faces)),
             }
+        }
+        self.beginnings.sort_unstable_by_key(|beginning| beginning.path);
+        self.choose(faces);
+        for number in 0..self.beginnings.len() {
+            if !self.beginnings[number].shared {
+                self.part_before_that(number);
+            }
+        }
+    }
+
+    /// Finds the branches at whose ends what comes of each face is known for all rays.
+    fn choose(&mut self, faces: Option<&Faces>) {
+        let [real, beside] = &mut self.arrivals;
+        beside.sort_unstable_by_key(|arrival| arrival.path);
+        for same in beside.chunk_by(|one, other| one.path == other.path) {
+            let known = faces.map_or(0, |faces| faces.of(same[0].path));
+            let is_met = |arrival: &Arrival| has_face(known, arrival.face);
+            // Where all come to one anyway there is nothing to choose.
+            let is_one = known.count_ones() < 2 && same.iter().all(is_met);
+            let key = |beginning: &Beginning| beginning.path;
+            if let Ok(number) = self.beginnings.binary_search_by_key(&same[0].path, key)
+                && (!is_one || self.beginnings[number].faces != 0)
+            {
+                self.beginnings[number].faces |= known;
+            }
+        }
+        // Each branch comes from one face.
+        real.sort_unstable_by_key(|arrival| (arrival.path, arrival.ray));
+        for beginning in &mut self.beginnings {
+            let ray = beginning.rays.trailing_zeros() as usize;
+            let key = |arrival: &Arrival| (arrival.path, arrival.ray);
+            let found = real.binary_search_by_key(&(beginning.from, ray), key);
+            beginning.from_face = found.ok().map(|place| real[place].face);
         }
     }
 
@@ -130,30 +370,114 @@ impl<const N: usize> Ways<N> {
     pub fn part_at(&mut self, path: u64) {
         if let Some(number) = self.find(path) {
             self.beginnings[number].parts = true;
+            self.choose_no_more(path);
         }
     }
 
     /// Notes that a branch is not shared: it is to be followed from the end of the one before.
     pub fn part_before(&mut self, path: u64) {
         if let Some(number) = self.find(path) {
-            let from = self.beginnings[number].from;
             self.beginnings[number].shared = false;
-            self.part_at(from);
+            self.choose_no_more(path);
+            self.part_before_that(number);
         }
     }
 
-    /// Forgets a start that not all rays come to, with all that comes of it.
-    pub fn forget(&mut self, start: u64) {
-        let comes_of = |mut path: u64| {
-            while path != start {
-                match self.find(path).map(|number| self.beginnings[number].from) {
-                    Some(from) if from != path => path = from,
-                    _ => return false,
-                }
+    fn part_before_that(&mut self, number: usize) {
+        let Beginning { from, from_face, .. } = self.beginnings[number];
+        let Some(number) = self.find(from) else { return };
+        let before = &mut self.beginnings[number];
+        match from_face {
+            Some(face) if has_face(before.faces, face) => {
+                before.parts = true;
+                before.parting_faces |= 1 << face;
             }
-            true
-        };
-        let kept = self.beginnings.iter().filter(|beginning| !comes_of(beginning.path));
+            _ => self.part_at(from),
+        }
+    }
+
+    /// Lets rays be traced that meet other faces at the end of a branch.
+    fn choose_no_more(&mut self, path: u64) {
+        let Some(number) = self.find(path) else { return };
+        if std::mem::take(&mut self.beginnings[number].faces) == 0 {
+            return;
+        }
+        for number in 0..self.beginnings.len() {
+            let Beginning { path: own, rays, all_rays, .. } = self.beginnings[number];
+            if rays != all_rays && own != path && self.comes_of(own, path) {
+                let beginning = &mut self.beginnings[number];
+                (beginning.shared, beginning.faces) = (false, 0);
+                self.part_before_that(number);
+            }
+        }
+    }
+
+    /// Whether a branch is another or comes of it.
+    fn comes_of(&self, mut path: u64, start: u64) -> bool {
+        while path != start {
+            match self.find(path).map(|number| self.beginnings[number].from) {
+                Some(from) if from != path => path = from,
+                _ => return false,
+            }
+        }
+        true
+    }
+
+    /// The faces of which it is known what comes of each at the end of a branch, as bits by their
+    /// numbers, where rays choose between them; else 0.
+    pub fn chooses(&self, path: u64) -> u64 {
+        self.find(path).map_or(0, |number| self.beginnings[number].faces)
+    }
+
+    /// Those of them at which rays part nevertheless.
+    pub fn parting_faces(&self, path: u64) -> u64 {
+        self.find(path).map_or(0, |number| self.beginnings[number].parting_faces)
+    }
+
+    /// The last branch on the way to another at whose end rays choose, with the face that leads on;
+    /// else the one with which they start.
+    pub fn chosen_on_the_way(&self, mut path: u64) -> Result<(u64, u16), u64> {
+        while let Some(number) = self.find(path) {
+            let Beginning { from, from_face, .. } = self.beginnings[number];
+            if from == path {
+                break;
+            }
+            if let (1.., Some(face)) = (self.chooses(from), from_face) {
+                return Ok((from, face));
+            }
+            path = from;
+        }
+        Err(path)
+    }
+
+    /// How many branches come before one.
+    pub fn depth(&self, mut path: u64) -> usize {
+        let mut depth = 0;
+        while let Some(number) = self.find(path)
+            && self.beginnings[number].from != path
+        {
+            path = self.beginnings[number].from;
+            depth += 1;
+        }
+        depth
+    }
+
+    /// Drops what larger patches know and not all rays come to: that alone holds on.
+    pub fn drop_lost(
+        &mut self,
+        leaves: &mut Vec<Smooth<Leaf<N>>>,
+        branches: &mut Vec<Smooth<Branch<N>>>,
+    ) {
+        let is_lost = |ways: &Self, met: Option<u64>| met.is_some_and(|path| !ways.has(path));
+        while let Some(number) = branches.iter().position(|branch| is_lost(self, branch.met)) {
+            self.forget(branches.remove(number).first.path);
+        }
+        leaves.retain(|leaf| !is_lost(self, leaf.met));
+    }
+
+    /// Forgets a start that not all rays come to, with all that comes of it.
+    fn forget(&mut self, start: u64) {
+        let kept = self.beginnings.iter().filter(|beginning| !self.comes_of(beginning.path, start));
         self.beginnings = kept.copied().collect();
     }
 
@@ -171,10 +495,10 @@ impl<const N: usize> Ways<N> {
         self.find(path).is_some_and(|number| self.beginnings[number].parts)
     }
 
-    /// The branches at whose ends rays part, that all rays have.
+    /// The branches at whose ends rays part or choose, that all rays have.
     pub fn parting(&self) -> impl Iterator<Item = u64> {
-        let parting =
-            self.beginnings.iter().filter(|beginning| beginning.shared && beginning.parts);
+        let parts = |beginning: &&Beginning| beginning.parts || beginning.faces != 0;
+        let parting = self.beginnings.iter().filter(|beginning| beginning.shared).filter(parts);
         parting.map(|beginning| beginning.path)
     }
 
@@ -193,29 +517,38 @@ impl<const N: usize> Ways<N> {
 
     /// How many borders a ray meets in the mean.
     pub fn borders(&self) -> f64 {
-        self.borders_of(|_| true)
+        let met: u32 = self.beginnings.iter().map(|beginning| beginning.rays.count_ones()).sum();
+        f64::from(met) / self.rays as f64
     }
 
     /// The same where it is to be traced.
     pub fn borders_to_trace(&self) -> f64 {
-        self.borders_of(|beginning| beginning.parts || !beginning.shared)
-    }
-
-    fn borders_of(&self, is_wanted: impl Fn(&Beginning) -> bool) -> f64 {
-        let wanted = self.beginnings.iter().filter(|beginning| is_wanted(beginning));
-        let met: u32 = wanted.map(|beginning| beginning.rays.count_ones()).sum();
-        f64::from(met) / self.rays as f64
+        let met = |beginning: &Beginning| {
+            let Beginning { path, rays, shared, parts, faces, parting_faces, .. } = *beginning;
+            if shared && faces != 0 {
+                let own = self.arrivals[0].iter().filter(|arrival| arrival.path == path);
+                own.filter(|arrival| has_face(parting_faces, arrival.face)).count()
+            } else if parts || !shared {
+                rays.count_ones() as usize
+            } else {
+                0
+            }
+        };
+        self.beginnings.iter().map(met).sum::<usize>() as f64 / self.rays as f64
     }
 
     /// For each branch that some rays have and others have not, those that have it.
     pub fn some_have(&self) -> impl Iterator<Item = u64> {
-        let some = self.beginnings.iter().map(|beginning| beginning.rays);
+        let some = self.beginnings.iter().map(|beginning| beginning.all_rays);
         some.filter(|rays| rays.count_ones() as usize != self.rays)
     }
 
     /// Whether a branch is met where rays are traced, and left out there.
     fn is_met(&self, beginning: &Beginning) -> bool {
-        let is_traced = |before: &Beginning| before.parts || !before.shared;
+        let is_traced = |before: &Beginning| {
+            let parts = |face: u16| before.faces == 0 || has_face(before.parting_faces, face);
+            !before.shared || before.parts && beginning.from_face.is_none_or(parts)
+        };
         beginning.shared
             && beginning.from != beginning.path
             && self.find(beginning.from).is_some_and(|number| is_traced(&self.beginnings[number]))
@@ -337,7 +670,8 @@ mod tests {
             went_on(&mut ways, ray, &same);
             went_on(&mut ways, ray, &[(1, other, 0.5), (other, 10 + other, 1e-5)]);
         }
-        ways.gather(2, [ROOT].into_iter(), 1e-4);
+        let start = Start { path: ROOT, rays: 3, faces: 0 };
+        ways.gather(2, [start].into_iter(), None, 1e-4);
         ways
     }
 
@@ -363,7 +697,8 @@ mod tests {
     fn what_comes_of_a_start_is_forgotten_with_it() {
         let mut ways = Ways::<1>::default();
         went_on(&mut ways, 0, &[(7, 8, 0.1), (8, 9, 0.1), (ROOT, 1, 1.0)]);
-        ways.gather(1, [ROOT, 7].into_iter(), 1e-4);
+        let starts = [ROOT, 7].map(|path| Start { path, rays: 1, faces: 0 });
+        ways.gather(1, starts.into_iter(), None, 1e-4);
         assert_eq!(ways.met_on_the_way(9), Err(7));
         ways.forget(7);
         assert!([7, 8, 9].iter().all(|path| !ways.has(*path)) && ways.has(1) && ways.has(ROOT));
