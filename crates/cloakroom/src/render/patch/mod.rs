@@ -425,16 +425,17 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     ) -> Option<Arc<Faces>> {
         let least = self.prepared.limits.min_power;
         let faces = Arc::new(self.ways.faces(&here.surfaces, least)?);
-        let above = above.map_or(&[][..], |above| &self.levels[above].branches);
+        let branches = above.map_or(&[][..], |above| &self.levels[above].branches);
         let is_followed = |number: usize, ray: usize| self.followed[number] >> ray & 1 == 1;
         let some_follow = |(number, branch): (usize, &Smooth<Branch<N>>)| {
             faces.of(branch.first.path) != 0 && (0..rays.len()).any(|ray| !is_followed(number, ray))
         };
-        if !faces.are_several() && !above.iter().enumerate().any(some_follow) {
+        if !faces.are_several() && !branches.iter().enumerate().any(some_follow) {
             return Some(faces);
         }
-        let borders = (self.ways.steps() as f64 / rays.len() as f64).max(1.0);
         let before = self.ways.steps();
+        let own = before as f64 / rays.len() as f64;
+        let borders = above.and_then(|above| self.levels[above].borders).unwrap_or(own).max(1.0);
         let camera = &self.prepared.scene.camera;
         for (number, four) in rays.chunks(4).enumerate() {
             let at = 4 * number;
@@ -447,7 +448,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 self.ways.with_others_beside(&faces, ray, further_on);
                 let point = here.patch.point(self.grids[grid_of(here.patch)].points[ray]);
                 let mut terms = TermsOfLevels::at(point);
-                for (number, smooth) in above.iter().enumerate() {
+                for (number, smooth) in branches.iter().enumerate() {
                     if !is_followed(number, ray) && faces.beside(smooth.first.path, ray) != 0 {
                         let mut branch = smooth.first;
                         let terms = terms.of(&self.levels, smooth.level);
