@@ -2,12 +2,15 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use cloakroom_trace::assembly::{Assembly, Placed};
-use cloakroom_trace::device::{Device, Request, SegmentMaterial, SquareCloak};
+use cloakroom_trace::device::{
+    Device, PrismOfMedium, Prisms, Request, SegmentMaterial, SquareCloak, Structure,
+};
 use cloakroom_trace::walk::{
     Branch, FourTracers, Launch, Leaf, Limits, PathRecorder, PathSegment, Tracer,
 };
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use optics::geometry::Pose;
+use optics::medium::Tensor;
 
 const LIMITS: Limits = Limits { min_power: 1e-4, tolerance: 1e-9 };
 
@@ -110,4 +113,79 @@ fn a_branch_out_of_its_region_is_lost() {
     let (leaves, outcome) = four.tracers[0].traced();
     assert_eq!((leaves.len(), outcome.stats.lost), (0, 1));
     assert_eq!(outcome.pruned, branch.power);
+}
+
+/// Takes branches to all planes around their region, and launched rays to a surface, as far as ways
+/// are known.
+#[derive(Clone, Debug, Default)]
+struct Beside {
+    known: Vec<u64>,
+    surface: Option<(u16, u16)>,
+}
+
+impl PathRecorder<2> for Beside {
+    fn record(&mut self, _: impl FnOnce() -> PathSegment<2>) {}
+
+    fn planes(&self, path: u64) -> Option<u64> {
+        Some(if path == 0 { 1 } else { 0b1111 })
+    }
+
+    fn first_surface(&self, _: u16) -> Option<(u16, u16)> {
+        self.surface
+    }
+
+    fn went_on(&mut self, _: u64, to: u64, _: f64) -> bool {
+        self.known.contains(&to)
+    }
+}
+
+/// A plate of a biaxial crystal from x = 0 to 4, from y = -1 up to a height.
+fn plate(height: f64) -> Structure {
+    let re = DMat3::from_cols_array(&[2.4, 0.2, 0.1, 0.2, 2.2, -0.1, 0.1, -0.1, 2.6]);
+    let prism = PrismOfMedium {
+        corners: Some(vec![[0.0, -1.0], [4.0, -1.0], [4.0, height], [0.0, height]]),
+        permittivity: Tensor { re, im: DMat3::ZERO }.into(),
+        ..PrismOfMedium::default()
+    };
+    Prisms { prism: vec![prism], ..Prisms::default() }.build(Request::default()).unwrap()
+}
+
+/// A ray that is taken to a plane which it does not meet does there what it would do in a larger body.
+#[test]
+fn a_ray_taken_beyond_an_edge_goes_on_as_in_a_larger_body() {
+    let placed = |height| {
+        Assembly::new(vec![Placed::new(Pose::new(DVec3::new(1.0, -0.5, 0.2), 0.1), plate(height))])
+    };
+    let [small, large] = [1.0, 9.0].map(placed);
+    let mut tried = 0;
+    for (height, slope) in [(0.0, 0.6), (0.2, 0.5), (1.5, 0.2), (2.5, -0.1), (3.0, 0.3)] {
+        let direction = DVec3::new(1.0, slope, 0.1).normalize();
+        let electric =
+            [direction.cross(DVec3::Z).normalize(), DVec3::Z.reject_from(direction).normalize()];
+        let origin = DVec3::new(-2.0, height - 2.0 * slope, 0.4);
+        let launch = Launch { origin, direction, electric: electric.map(Into::into) };
+        let mut whole = Tracer::new(&large, LIMITS).watched(Watcher::default());
+        let surface = whole.first_surface(origin, direction);
+        let (leaves, _) = whole.trace(&launch);
+        let leaves = by_path(leaves);
+        let known = whole.watcher().came_of.iter().map(|(to, _)| *to).collect();
+        let beside = Beside { known, surface };
+        let mut taken = Tracer::new(&small, LIMITS).watched(beside);
+        let found = by_path(taken.trace(&launch).0);
+        // Without planes it goes another way.
+        let mut real = Tracer::<2>::new(&small, LIMITS);
+        let real = by_path(real.trace(&launch).0);
+        let straight = |leaf: &&Leaf<2>| leaf.largest_power() > 0.1;
+        for leaf in leaves.iter().filter(straight) {
+            let same = found.iter().find(|found| found.path == leaf.path).unwrap();
+            assert!(same.position.distance(leaf.position) < 1e-12, "{same:?} {leaf:?}");
+            assert!(same.direction.distance(leaf.direction) < 1e-12, "{same:?} {leaf:?}");
+            assert!((same.optical_path - leaf.optical_path).abs() < 1e-12, "{same:?} {leaf:?}");
+            for (one, other) in same.electric.iter().zip(leaf.electric) {
+                assert!((*one - other).norm_squared() < 1e-24, "{same:?} {leaf:?}");
+            }
+            tried += u32::from(real.iter().all(|real| real.path != leaf.path));
+        }
+    }
+    assert!(tried > 5, "{tried} leaves are hardly a trial");
 }

@@ -25,7 +25,7 @@ use instructions::Instructions;
 use smooth::{Functions, Rough, Smooth, smooth};
 use std::ops::Range;
 use std::sync::Arc;
-use ways::{Faces, LeftOut, ROOT, Start, Surfaces, Trail, Ways, has_face};
+use ways::{Choice, Faces, LeftOut, Origin, ROOT, Start, Surfaces, Trail, Ways};
 
 /// Width and height of the largest patches, pixels.
 pub(super) const SIDE: usize = 32;
@@ -112,10 +112,8 @@ struct Level<const N: usize> {
     leaves: Vec<Smooth<Leaf<N>>>,
     /// Whether rays are to be traced from their start on.
     launched: bool,
-    /// The surfaces between which they choose, as bits by their places, and those of them of which
-    /// alone they are to be traced.
-    faces: u64,
-    parting_faces: u64,
+    /// The surfaces between which they choose, by their places.
+    choice: Choice,
     /// The branches from which on they are, interpolated up to there.
     branches: Vec<Smooth<Branch<N>>>,
     /// What all rays have of what is met there.
@@ -182,12 +180,17 @@ pub(super) struct LeafPatches<'a, const N: usize> {
 }
 
 impl<const N: usize> Level<N> {
+    /// The place among the surfaces of what is past all devices.
+    fn past_all(&self) -> Option<u16> {
+        Some(self.surfaces.iter().position(Option::is_none)? as u16)
+    }
+
     /// Whether a ray that meets that surface first is to be traced from its start on.
     fn is_launched(&self, surface: Option<(u16, u16)>) -> bool {
         let place = || self.surfaces.iter().position(|known| *known == surface);
         self.launched
-            && (self.faces == 0
-                || place().is_some_and(|place| has_face(self.parting_faces, place as u16)))
+            && (!self.choice.is_made()
+                || place().is_some_and(|place| self.choice.parts_at(place as u16)))
     }
 }
 
@@ -285,8 +288,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             surfaces: Surfaces::new(),
             leaves: Vec::new(),
             launched: true,
-            faces: 0,
-            parting_faces: 0,
+            choice: Choice::default(),
             branches: Vec::new(),
             left_out: LeftOut::default(),
             traced: 1.0,
@@ -314,9 +316,13 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let above = self.levels.len().checked_sub(1).filter(|above| {
             first.iter().all(|surface| self.levels[*above].surfaces.contains(surface))
         });
-        let chooses = |above: &&Level<N>| !above.launched || above.faces != 0;
-        match above.map(|above| &self.levels[above]).filter(chooses) {
-            Some(above) => here.surfaces = above.surfaces.clone(),
+        let known = above.map(|above| &self.levels[above].surfaces);
+        let chooses = |above: usize| {
+            let above = &self.levels[above];
+            !above.launched || above.choice.is_made()
+        };
+        match known.filter(|_| above.is_some_and(chooses)) {
+            Some(known) => here.surfaces = known.clone(),
             None => {
                 for surface in &first {
                     let is_new = !here.surfaces.contains(surface);
@@ -330,8 +336,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         if is_one && here.surfaces[0].is_none() {
             return Fit::Alone;
         }
-        let beside = |ray: &usize| first[*ray] == first[0];
-        self.cuts = grid.cuts(bits((0..rays.len()).filter(beside)));
+        let as_first = |ray: &usize| first[*ray] == first[0];
+        self.cuts = grid.cuts(bits((0..rays.len()).filter(as_first)));
         let are_planes = || here.surfaces.iter().flatten().all(|surface| any.is_plane(*surface));
         if !(is_one || self.in_air && are_planes()) {
             here.surfaces.clear();
@@ -500,24 +506,21 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let mut terms = TermsOfLevels::at(*point);
             for smooth in branches {
                 chosen.push(None);
-                if smooth
-                    .given
-                    .is_some_and(|(_, face)| chosen.get(smooth.chooser) != Some(&Some(face)))
-                {
+                if !smooth.is_reached(chosen) {
                     continue;
                 }
                 further_on.push(smooth.first);
                 let Some(branch) = further_on.last_mut() else { break };
                 let terms = terms.of(&self.levels, smooth.level);
                 let mut is_known = true;
-                if smooth.faces != 0 {
+                if smooth.choice.is_made() {
                     smooth.point_from(branch, terms, &self.coefficients);
                     let face = self.tracers.tracers[0].plane_met(branch);
-                    let face = face.filter(|face| has_face(smooth.faces, *face));
+                    let face = face.filter(|face| smooth.choice.has(*face));
                     if let Some(last) = chosen.last_mut() {
                         *last = face;
                     }
-                    if face.is_some_and(|face| !has_face(smooth.parting_faces, face)) {
+                    if face.is_some_and(|face| !smooth.choice.parts_at(face)) {
                         further_on.pop();
                         continue;
                     }
@@ -553,13 +556,11 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         };
         let is_launched = above.is_none_or(|above| above.launched);
         let known_borders = above.and_then(|above| above.borders);
-        if let Some(above) = above.filter(|above| !above.launched || above.faces != 0) {
-            (here.faces, here.parting_faces) = (above.faces, above.parting_faces);
-        }
-        let root = Start { path: ROOT, rays: launched, faces: here.faces };
+        here.choice = above.map_or(Choice::default(), |above| above.choice);
+        let root = Start { path: ROOT, rays: launched, faces: here.choice.faces };
         let starts = is_launched.then_some(root).into_iter();
         let starts = starts.chain(branches.iter().zip(&self.followed).map(|(branch, rays)| {
-            Start { path: branch.first.path, rays: *rays, faces: branch.faces }
+            Start { path: branch.first.path, rays: *rays, faces: branch.choice.faces }
         }));
         self.ways.gather(rays, starts, faces, least);
         self.ways.drop_lost(&mut leaves, &mut branches);
@@ -567,71 +568,15 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         self.fit_branches(here.patch, level, &mut branches);
         // Rays may part where they were thought to choose.
         self.ways.drop_lost(&mut leaves, &mut branches);
-        let ways = &self.ways;
-        let starts: Vec<(u64, Option<u64>)> =
-            branches.iter().map(|branch| (branch.first.path, branch.met)).collect();
-        let given_before: Vec<(u64, Option<(u64, u16)>)> =
-            branches.iter().map(|branch| (branch.first.path, branch.given)).collect();
-        let faces_of = |path: u64, known: Option<[u64; 2]>| {
-            let (chosen, parting) = (ways.chooses(path), ways.parting_faces(path));
-            let found = faces.map_or(0, |faces| faces.of(path));
-            match known {
-                Some([all, before]) if chosen != 0 => {
-                    [all | chosen, before & !found | parting & found]
-                }
-                Some([all, before]) => [all, before | found & all],
-                None => [chosen, parting],
-            }
-        };
         if is_launched {
-            let known = Some([here.faces, here.parting_faces]).filter(|_| here.faces != 0);
-            [here.faces, here.parting_faces] = faces_of(ROOT, known);
+            here.choice = self.ways.choice_in_part(ROOT, here.choice, faces);
         }
         for branch in &mut branches {
-            let known = [branch.faces, branch.parting_faces];
-            let known = Some(known).filter(|_| branch.level < level && branch.faces != 0);
-            [branch.faces, branch.parting_faces] = faces_of(branch.first.path, known);
+            branch.choice = self.ways.choice_in_part(branch.first.path, branch.choice, faces);
         }
-        branches.retain(|branch| {
-            let path = branch.first.path;
-            branch.faces != 0 || ways.parts(path) && (branch.level < level || ways.has(path))
-        });
-        branches.sort_by_key(|branch| {
-            (branch.level, if branch.level == level { ways.depth(branch.first.path) } else { 0 })
-        });
-        let paths: Vec<u64> = branches.iter().map(|branch| branch.first.path).collect();
-        let past_all = here.surfaces.iter().position(Option::is_none);
-        // Of a launched ray that is traced, so is the leaf without a device.
-        let is_traced = past_all
-            .is_none_or(|place| here.faces == 0 || has_face(here.parting_faces, place as u16));
-        leaves.retain(|leaf| match leaf.first.path {
-            ROOT => !is_traced,
-            path => leaf.level < level || ways.has(path),
-        });
-        let given = |path: u64| match ways.chosen_on_the_way(path) {
-            Err(ROOT) if path == ROOT => Some((ROOT, past_all? as u16)),
-            Ok(chosen) => Some(chosen),
-            Err(start) => given_before.iter().find(|(path, _)| *path == start)?.1,
-        };
-        let number_of = |given: Option<(u64, u16)>| {
-            let is_it = |path: &u64| given.is_some_and(|(chooser, _)| *path == chooser);
-            match given {
-                Some((ROOT, _)) => 0,
-                _ => paths.iter().position(is_it).map_or(usize::MAX, |number| 1 + number),
-            }
-        };
-        for branch in &mut branches {
-            if branch.level == level {
-                branch.given = given(branch.first.path);
-            }
-            branch.chooser = number_of(branch.given);
-        }
-        for leaf in &mut leaves {
-            if leaf.level == level {
-                leaf.given = given(leaf.first.path);
-            }
-            leaf.chooser = number_of(leaf.given);
-        }
+        let starts: Vec<Origin> = branches.iter().map(Origin::of).collect();
+        self.keep_what_is_needed(here, &mut leaves, &mut branches);
+        self.find_choices_before(here, &starts, &mut leaves, &mut branches);
         for part in self.ways.some_have() {
             let cuts = self.grid(here.patch).cuts(part);
             self.cuts = [0, 1].map(|axis| self.cuts[axis] + cuts[axis]);
@@ -639,27 +584,14 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let borders = known_borders.unwrap_or_else(|| self.ways.borders());
         here.borders = Some(borders);
         here.traced = (self.ways.borders_to_trace() / borders).min(1.0);
-        here.launched = match here.faces {
-            0 => self.ways.parts(ROOT),
-            _ => here.parting_faces != 0,
+        here.launched = match here.choice.is_made() {
+            true => here.choice.parting != 0,
+            false => self.ways.parts(ROOT),
         };
         here.left_out = LeftOut::new(self.ways.met());
-        let met_before = |mut path: u64| loop {
-            match self.ways.met_on_the_way(path) {
-                Ok(met) => return Some(met),
-                // What is before it larger patches know.
-                Err(start) => {
-                    let met = starts.iter().find(|(path, _)| *path == start)?.1?;
-                    if met == path {
-                        // No ray of the patch comes there.
-                        return Some(met);
-                    }
-                    path = met;
-                }
-            }
-        };
         let find = |path: u64, level_of: usize, known: Option<u64>| {
-            let met = if level_of == level { Some(path) } else { known }.and_then(met_before);
+            let met = if level_of == level { Some(path) } else { known };
+            let met = met.and_then(|path| self.ways.met_before(path, &starts));
             (met, met.map_or(0, |path| here.left_out.place(path)))
         };
         for leaf in &mut leaves {
@@ -674,6 +606,68 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }
     }
 
+    /// Drops the branches at whose ends rays neither part nor choose, and what is traced; puts the
+    /// branches in an order in which each comes after those before it.
+    fn keep_what_is_needed(
+        &self,
+        here: &Level<N>,
+        leaves: &mut Vec<Smooth<Leaf<N>>>,
+        branches: &mut Vec<Smooth<Branch<N>>>,
+    ) {
+        let (ways, level) = (&self.ways, self.levels.len());
+        let is_known = |path: u64, known_at: usize| known_at < level || ways.has(path);
+        branches.retain(|branch| {
+            let path = branch.first.path;
+            branch.choice.is_made() || ways.parts(path) && is_known(path, branch.level)
+        });
+        branches.sort_by_key(|branch| {
+            let depth = || ways.depth(branch.first.path);
+            (branch.level, if branch.level == level { depth() } else { 0 })
+        });
+        leaves.retain(|leaf| match leaf.first.path {
+            // Of a launched ray that is traced, so is the leaf without a device.
+            ROOT => here
+                .past_all()
+                .is_some_and(|place| here.choice.is_made() && !here.choice.parts_at(place)),
+            path => is_known(path, leaf.level),
+        });
+    }
+
+    /// Finds the last choices of rays before leaves and branches.
+    fn find_choices_before(
+        &self,
+        here: &Level<N>,
+        starts: &[Origin],
+        leaves: &mut [Smooth<Leaf<N>>],
+        branches: &mut [Smooth<Branch<N>>],
+    ) {
+        let level = self.levels.len();
+        let paths: Vec<u64> = branches.iter().map(|branch| branch.first.path).collect();
+        let given = |path: u64| match self.ways.chosen_on_the_way(path) {
+            Ok(chosen) => Some(chosen),
+            Err(ROOT) if path == ROOT => Some((ROOT, here.past_all()?)),
+            Err(start) => starts.iter().find(|known| known.path == start)?.given,
+        };
+        // The launched ray comes before all branches.
+        let number_of = |(chooser, _): (u64, u16)| match chooser {
+            ROOT => Some(0),
+            _ => Some(1 + paths.iter().position(|path| *path == chooser)?),
+        };
+        let chooser = |given: Option<(u64, u16)>| given.and_then(number_of).unwrap_or(usize::MAX);
+        for branch in branches {
+            if branch.level == level {
+                branch.given = given(branch.first.path);
+            }
+            branch.chooser = chooser(branch.given);
+        }
+        for leaf in leaves {
+            if leaf.level == level {
+                leaf.given = given(leaf.first.path);
+            }
+            leaf.chooser = chooser(leaf.given);
+        }
+    }
+
     /// Makes functions of the leaves that all rays have; where they are none, rays part.
     fn fit_leaves(&mut self, patch: Patch, level: usize, smooth_leaves: &mut Vec<Smooth<Leaf<N>>>) {
         let mut found: Vec<_> =
@@ -685,7 +679,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             if power < self.prepared.limits.min_power || !self.ways.has(path) {
                 continue;
             }
-            if path != ROOT && self.ways.chooses(path) != 0 {
+            if path != ROOT && self.ways.choice(path).is_made() {
                 // At some face it ends.
                 self.ways.part_at(path);
                 continue;
@@ -748,7 +742,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     /// are like those of the patch, and nothing rare has come of them.
     pub fn sample(&mut self, points: &[[f64; 2]; 4], rays: &[CameraRay; 4]) -> bool {
         let Some(here) = self.levels.last() else { return false };
-        let is_traced = here.launched || !here.branches.is_empty() || here.faces != 0;
+        let is_traced = here.launched || !here.branches.is_empty() || here.choice.is_made();
         let tracer = &self.tracers.tracers[0];
         let met = rays.each_ref().map(|ray| tracer.first_surface(ray.origin, ray.direction));
         if !met.iter().all(|surface| here.surfaces.contains(surface)) {
@@ -799,10 +793,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let mut terms = TermsOfLevels::at(point);
         let (mut as_traced, mut count) = (true, 0);
         for smooth in &here.leaves {
-            if smooth
-                .given
-                .is_some_and(|(_, face)| self.chosen[ray].get(smooth.chooser) != Some(&Some(face)))
-            {
+            if !smooth.is_reached(&self.chosen[ray]) {
                 continue;
             }
             let terms = terms.of(&self.levels, smooth.level);

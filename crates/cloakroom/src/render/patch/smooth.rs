@@ -1,6 +1,7 @@
 //! Leaves and branches as functions of the place in a patch.
 
 use super::grid::{Coefficients, Grid, LANES, MOST, Terms};
+use super::ways::Choice;
 use crate::render::detection::Detection;
 use crate::render::prepared_scene::PreparedScene;
 use crate::trace::{Branch, Leaf};
@@ -51,13 +52,17 @@ pub(super) struct Smooth<T> {
     pub given: Option<(u64, u16)>,
     /// The number of that branch.
     pub chooser: usize,
-    /// The faces between which rays choose at its own end, as bits by their numbers.
-    pub faces: u64,
-    /// Those of them at which rays part nevertheless.
-    pub parting_faces: u64,
+    /// The faces between which rays choose at its own end.
+    pub choice: Choice,
 }
 
 impl<T: Interpolated> Smooth<T> {
+    /// Whether a ray comes there that has chosen these faces.
+    #[inline(always)]
+    pub fn is_reached(&self, chosen: &[Option<u16>]) -> bool {
+        self.given.is_none_or(|(_, face)| chosen.get(self.chooser) == Some(&Some(face)))
+    }
+
     /// Moves that at the first node to a place of the patch.
     #[inline(always)]
     pub fn move_to(
@@ -364,8 +369,7 @@ pub(super) fn smooth<T: Interpolated>(
         place: 0,
         given: None,
         chooser: 0,
-        faces: 0,
-        parting_faces: 0,
+        choice: Choice::default(),
     };
     let mut between = found[nodes..].iter().peekable();
     let is_smooth = (nodes..).zip(&grid.checks).all(|(number, at)| {

@@ -27,8 +27,44 @@ struct Arrival {
 
 /// Whether a face is among some, given as bits by their numbers.
 #[inline]
-pub(super) fn has_face(faces: u64, face: u16) -> bool {
+fn has_face(faces: u64, face: u16) -> bool {
     faces.checked_shr(face.into()).is_some_and(|faces| faces & 1 == 1)
+}
+
+/// The faces between which rays choose at the end of a branch, as bits by their numbers: of each of them it
+/// is known for all rays what comes of it. None, where they do not choose.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Choice {
+    pub faces: u64,
+    /// Those at which rays part nevertheless.
+    pub parting: u64,
+}
+
+impl Choice {
+    pub fn is_made(self) -> bool {
+        self.faces != 0
+    }
+
+    /// Whether what comes of a face is known.
+    pub fn has(self, face: u16) -> bool {
+        has_face(self.faces, face)
+    }
+
+    /// Whether rays that come to a face are to be traced from there on.
+    pub fn parts_at(self, face: u16) -> bool {
+        has_face(self.parting, face)
+    }
+
+    /// With what a part of the patch says, in which rays have come to the `found` faces.
+    fn and(self, part: Self, found: u64) -> Self {
+        match part.is_made() {
+            true => Self {
+                faces: self.faces | part.faces,
+                parting: self.parting & !found | part.parting & found,
+            },
+            false => Self { parting: self.parting | found & self.faces, ..self },
+        }
+    }
 }
 
 /// The faces to which branches come, each by all rays that have it.
@@ -163,11 +199,8 @@ struct Beginning {
     shared: bool,
     /// Whether rays part at its end.
     parts: bool,
-    /// The faces that are known, as bits by their numbers, where it is a function of the place all
-    /// the same what comes of each of them: a ray has what comes of the one that it meets.
-    faces: u64,
-    /// Those at which rays part nevertheless.
-    parting_faces: u64,
+    /// The faces between which rays choose there.
+    choice: Choice,
     /// The face of the branch before from which it comes.
     from_face: Option<u16>,
 }
@@ -180,6 +213,21 @@ pub(super) struct Start {
     pub rays: u64,
     /// The faces between which rays are known to choose at its end.
     pub faces: u64,
+}
+
+/// What larger patches know of what is before a branch with which rays start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Origin {
+    pub path: u64,
+    met: Option<u64>,
+    /// The last branch before at whose end rays choose between faces, and the face that leads on.
+    pub given: Option<(u64, u16)>,
+}
+
+impl Origin {
+    pub fn of<const N: usize>(branch: &Smooth<Branch<N>>) -> Self {
+        Self { path: branch.first.path, met: branch.met, given: branch.given }
+    }
 }
 
 /// The tree of all ways that the rays of a patch take.
@@ -309,8 +357,7 @@ impl<const N: usize> Ways<N> {
             all_rays,
             shared: all_rays == all,
             parts: false,
-            faces,
-            parting_faces: 0,
+            choice: Choice { faces, parting: 0 },
             from_face: None,
         };
         self.steps.sort_unstable_by_key(|step| step.to);
@@ -327,7 +374,7 @@ impl<const N: usize> Ways<N> {
         for Start { path, rays, faces } in starts {
             // The steps are in order.
             match self.beginnings[..found].binary_search_by_key(&path, |known| known.path) {
-                Ok(number) => self.beginnings[number].faces = faces,
+                Ok(number) => self.beginnings[number].choice.faces = faces,
                 Err(_) => self.beginnings.push(beginning(path, path, [rays, all], faces)),
             }
         }
@@ -351,9 +398,9 @@ impl<const N: usize> Ways<N> {
             let is_one = known.count_ones() < 2 && same.iter().all(is_met);
             let key = |beginning: &Beginning| beginning.path;
             if let Ok(number) = self.beginnings.binary_search_by_key(&same[0].path, key)
-                && (!is_one || self.beginnings[number].faces != 0)
+                && (!is_one || self.beginnings[number].choice.is_made())
             {
-                self.beginnings[number].faces |= known;
+                self.beginnings[number].choice.faces |= known;
             }
         }
         // Each branch comes from one face.
@@ -388,9 +435,9 @@ impl<const N: usize> Ways<N> {
         let Some(number) = self.find(from) else { return };
         let before = &mut self.beginnings[number];
         match from_face {
-            Some(face) if has_face(before.faces, face) => {
+            Some(face) if before.choice.has(face) => {
                 before.parts = true;
-                before.parting_faces |= 1 << face;
+                before.choice.parting |= 1 << face;
             }
             _ => self.part_at(from),
         }
@@ -399,14 +446,14 @@ impl<const N: usize> Ways<N> {
     /// Lets rays be traced that meet other faces at the end of a branch.
     fn choose_no_more(&mut self, path: u64) {
         let Some(number) = self.find(path) else { return };
-        if std::mem::take(&mut self.beginnings[number].faces) == 0 {
+        if !std::mem::take(&mut self.beginnings[number].choice).is_made() {
             return;
         }
         for number in 0..self.beginnings.len() {
             let Beginning { path: own, rays, all_rays, .. } = self.beginnings[number];
             if rays != all_rays && own != path && self.comes_of(own, path) {
                 let beginning = &mut self.beginnings[number];
-                (beginning.shared, beginning.faces) = (false, 0);
+                (beginning.shared, beginning.choice) = (false, Choice::default());
                 self.part_before_that(number);
             }
         }
@@ -423,15 +470,16 @@ impl<const N: usize> Ways<N> {
         true
     }
 
-    /// The faces of which it is known what comes of each at the end of a branch, as bits by their
-    /// numbers, where rays choose between them; else 0.
-    pub fn chooses(&self, path: u64) -> u64 {
-        self.find(path).map_or(0, |number| self.beginnings[number].faces)
+    /// The faces between which rays choose at the end of a branch.
+    pub fn choice(&self, path: u64) -> Choice {
+        self.find(path).map_or(Choice::default(), |number| self.beginnings[number].choice)
     }
 
-    /// Those of them at which rays part nevertheless.
-    pub fn parting_faces(&self, path: u64) -> u64 {
-        self.find(path).map_or(0, |number| self.beginnings[number].parting_faces)
+    /// The same, given what is known of a larger patch.
+    pub fn choice_in_part(&self, path: u64, known: Choice, faces: Option<&Faces>) -> Choice {
+        let own = self.choice(path);
+        let found = faces.map_or(0, |faces| faces.of(path));
+        if known.is_made() { known.and(own, found) } else { own }
     }
 
     /// The last branch on the way to another at whose end rays choose, with the face that leads on;
@@ -442,7 +490,7 @@ impl<const N: usize> Ways<N> {
             if from == path {
                 break;
             }
-            if let (1.., Some(face)) = (self.chooses(from), from_face) {
+            if let (true, Some(face)) = (self.choice(from).is_made(), from_face) {
                 return Ok((from, face));
             }
             path = from;
@@ -497,7 +545,7 @@ impl<const N: usize> Ways<N> {
 
     /// The branches at whose ends rays part or choose, that all rays have.
     pub fn parting(&self) -> impl Iterator<Item = u64> {
-        let parts = |beginning: &&Beginning| beginning.parts || beginning.faces != 0;
+        let parts = |beginning: &&Beginning| beginning.parts || beginning.choice.is_made();
         let parting = self.beginnings.iter().filter(|beginning| beginning.shared).filter(parts);
         parting.map(|beginning| beginning.path)
     }
@@ -524,10 +572,10 @@ impl<const N: usize> Ways<N> {
     /// The same where it is to be traced.
     pub fn borders_to_trace(&self) -> f64 {
         let met = |beginning: &Beginning| {
-            let Beginning { path, rays, shared, parts, faces, parting_faces, .. } = *beginning;
-            if shared && faces != 0 {
+            let Beginning { path, rays, shared, parts, choice, .. } = *beginning;
+            if shared && choice.is_made() {
                 let own = self.arrivals[0].iter().filter(|arrival| arrival.path == path);
-                own.filter(|arrival| has_face(parting_faces, arrival.face)).count()
+                own.filter(|arrival| choice.parts_at(arrival.face)).count()
             } else if parts || !shared {
                 rays.count_ones() as usize
             } else {
@@ -546,7 +594,7 @@ impl<const N: usize> Ways<N> {
     /// Whether a branch is met where rays are traced, and left out there.
     fn is_met(&self, beginning: &Beginning) -> bool {
         let is_traced = |before: &Beginning| {
-            let parts = |face: u16| before.faces == 0 || has_face(before.parting_faces, face);
+            let parts = |face: u16| !before.choice.is_made() || before.choice.parts_at(face);
             !before.shared || before.parts && beginning.from_face.is_none_or(parts)
         };
         beginning.shared
@@ -556,7 +604,7 @@ impl<const N: usize> Ways<N> {
 
     /// The last branch on the way to another, or that itself, that is met where rays are traced;
     /// else the one with which they start.
-    pub fn met_on_the_way(&self, mut path: u64) -> Result<u64, u64> {
+    fn met_on_the_way(&self, mut path: u64) -> Result<u64, u64> {
         while let Some(number) = self.find(path) {
             let beginning = self.beginnings[number];
             if self.is_met(&beginning) {
@@ -568,6 +616,23 @@ impl<const N: usize> Ways<N> {
             path = beginning.from;
         }
         Err(path)
+    }
+
+    /// The same where larger patches know what is before the starts.
+    pub fn met_before(&self, mut path: u64, starts: &[Origin]) -> Option<u64> {
+        loop {
+            match self.met_on_the_way(path) {
+                Ok(met) => return Some(met),
+                Err(start) => {
+                    let met = starts.iter().find(|known| known.path == start)?.met?;
+                    if met == path {
+                        // No ray of the patch comes there.
+                        return Some(met);
+                    }
+                    path = met;
+                }
+            }
+        }
     }
 
     /// All that are.
@@ -691,6 +756,44 @@ mod tests {
         assert_eq!(ways.parting().collect::<Vec<_>>(), [1, 4]);
         assert_eq!(ways.met().collect::<Vec<_>>(), [4, 6]);
         assert_eq!(ways.borders_to_trace(), 4.0);
+    }
+
+    /// Two rays that go 1, and from there to 2 by face 4 or to 3 by face 5; each is taken to the other's.
+    #[test]
+    fn rays_choose_between_faces_of_which_all_is_known() {
+        let mut ways = Ways::<1>::default();
+        let own = [(4, 2), (5, 3)];
+        for (ray, (face, to)) in own.into_iter().enumerate() {
+            let mut trail = Trail::default();
+            trail.went_on(ROOT, 1, 1.0);
+            trail.arrives(1, face);
+            trail.went_on(1, to, 0.5);
+            ways.add(ray, &mut trail);
+        }
+        let faces = Arc::new(ways.faces(&Surfaces::new(), 1e-4).expect("faces"));
+        assert!(faces.are_several());
+        assert_eq!((faces.of(1), faces.of(2)), (0b11_0000, 0));
+        assert_eq!([0, 1].map(|ray| faces.beside(1, ray)), [1 << 5, 1 << 4]);
+        for (ray, (face, to)) in [(4, 3), (5, 2)].into_iter().enumerate() {
+            let mut trail = Trail { beside: Some((Arc::clone(&faces), ray)), ..Trail::default() };
+            trail.arrives(1, face);
+            assert!(trail.went_on(1, to, 0.5) && !trail.went_on(1, 9, 0.5), "9 is not known");
+            ways.add(ray, &mut trail);
+        }
+        let start = Start { path: ROOT, rays: 3, faces: 0 };
+        ways.gather(2, [start].into_iter(), Some(&faces), 1e-4);
+        assert_eq!((ways.choice(1).faces, ways.choice(1).parting), (0b11_0000, 0));
+        assert!([ROOT, 1, 2, 3].iter().all(|path| ways.has(*path)));
+        assert_eq!([2, 3].map(|path| ways.chosen_on_the_way(path)), [Ok((1, 4)), Ok((1, 5))]);
+        assert_eq!((ways.parting().collect::<Vec<_>>(), ways.met().count()), (vec![1], 0));
+        assert_eq!((ways.borders(), ways.borders_to_trace()), (3.0, 0.0));
+        // Where 3 is no function, rays that meet its face are traced from 1 on, and through 3.
+        ways.part_before(3);
+        assert!(ways.choice(1).parts_at(5) && !ways.choice(1).parts_at(4));
+        assert_eq!((ways.has(2), ways.borders_to_trace()), (true, 1.0));
+        // Where they part at 1 itself, it is what each has for itself that counts.
+        ways.part_at(1);
+        assert!(!ways.choice(1).is_made() && !ways.has(2) && ways.has(1));
     }
 
     #[test]
