@@ -378,6 +378,38 @@ impl Region {
         })
     }
 
+    /// Which of the planes around a homogeneous medium a ray meets, if none other comes closer than
+    /// `slack` (cm) along its way to it.
+    #[must_use]
+    pub(crate) fn plane_met(&self, ray: &InnerRay, slack: f64) -> Option<u16> {
+        let mut nearest: Option<(u16, &Face)> = None;
+        let (mut least, mut next) = (f64::INFINITY, f64::INFINITY);
+        for (index, face) in (0u16..).zip(self.faces()) {
+            // Faces of one plane come one after the other.
+            let is_first = nearest.is_none_or(|(_, before)| before.plane != face.plane);
+            if let Some(distance) = face.plane.distance(ray.position, ray.direction)
+                && is_first
+            {
+                if distance < least {
+                    next = least;
+                    (nearest, least) = (Some((index, face)), distance);
+                } else {
+                    next = next.min(distance);
+                }
+            }
+        }
+        let (mut index, mut face) = nearest?;
+        let end = ray.position + ray.direction * least;
+        let along = DVec3::Z.cross(face.plane.normal).dot(end);
+        let mut clear = next - least >= slack;
+        while face.until < along {
+            clear &= along - face.until >= slack;
+            index += 1;
+            face = self.faces().get(usize::from(index))?;
+        }
+        (clear && face.until - along >= slack).then_some(index)
+    }
+
     /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what
     /// it would get alone.
     #[must_use]

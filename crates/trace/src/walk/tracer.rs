@@ -389,7 +389,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.recorder.begins(branch);
         let ray = branch.inner_ray();
         let region = self.assembly.device(place.0).region(place.1);
-        if let Some(face) = self.plane_met(branch) {
+        if let Some(face) = self.plane_met(branch, 0.0) {
             self.recorder.arrives(branch.path, face);
         }
         while planes != 0 {
@@ -431,14 +431,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         false
     }
 
-    /// Which of the planes around its region a branch meets, if its region is between planes.
+    /// Which of the planes around its region a branch meets, if its region is between planes and no
+    /// other comes closer than `slack` (cm) to it there, along its way.
     #[must_use]
-    pub fn plane_met(&self, branch: &Branch<N>) -> Option<u16> {
+    pub fn plane_met(&self, branch: &Branch<N>, slack: f64) -> Option<u16> {
         let Place::Region { device, region } = branch.place else { return None };
-        if self.assembly.device(device).region(region).faces().is_empty() {
-            return None;
-        }
-        Some(self.advance((device, region), &branch.inner_ray()).ok()?.face)
+        self.assembly.device(device).region(region).plane_met(&branch.inner_ray(), slack)
     }
 
     /// Whether a branch is where it was when it was looked at before, with as much power.

@@ -41,6 +41,10 @@ const DEEPER: f64 = 0.25;
 /// followed there.
 const DEEPEST: f64 = 1e-3;
 
+/// Rays come to no known face within so much of an edge, in terms of the tolerance: which one they
+/// meet the branch before, interpolated, cannot tell.
+const EDGE: f64 = 10.0;
+
 /// They are traced so much more exactly, for errors of theirs are not smooth.
 const CLOSER: f64 = 0.2;
 
@@ -364,7 +368,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let points = std::array::from_fn(|i| here.patch.point(grid.points[at + ray(i)]));
             let surfaces = std::array::from_fn(|i| first[at + ray(i)]);
             let least = DEEPER * self.prepared.limits.min_power;
-            self.go_further_on(above, &points, &surfaces, least);
+            // Here the edges are those of the branches: of each ray something must be known.
+            self.go_further_on(above, &points, &surfaces, [least, 0.0]);
             let launched_here = std::array::from_fn(|i| launched[at + ray(i)]);
             self.scouts.trace_further_on(&launches, launched_here, &self.further_on);
             self.walks += four.len() as f64 * share;
@@ -482,13 +487,13 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     /// Puts the branches in place from which on four rays of a patch, of that level or a part of
     /// it, are followed, if they are strong enough: none without a level. Whether they come to known
-    /// faces where they choose between them.
+    /// faces where they choose between them, and no closer to edges than `slack` (cm).
     fn go_further_on(
         &mut self,
         level: Option<usize>,
         points: &[[f64; 2]; 4],
         first_surfaces: &[Option<(u16, u16)>; 4],
-        least: f64,
+        [least, slack]: [f64; 2],
     ) -> bool {
         let mut all_known = true;
         let branches = level.map_or(&[][..], |level| &self.levels[level].branches);
@@ -515,7 +520,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let mut is_known = true;
                 if smooth.choice.is_made() {
                     smooth.point_from(branch, terms, &self.coefficients);
-                    let face = self.tracers.tracers[0].plane_met(branch);
+                    let face = self.tracers.tracers[0].plane_met(branch, slack);
                     let face = face.filter(|face| smooth.choice.has(*face));
                     if let Some(last) = chosen.last_mut() {
                         *last = face;
@@ -753,7 +758,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let level = self.levels.len().checked_sub(1);
             let least = self.prepared.limits.min_power;
             let instructions = self.instructions;
-            if !instructions.with(|| self.go_further_on(level, points, &met, least)) {
+            let limits = [least, EDGE * self.prepared.limits.tolerance];
+            if !instructions.with(|| self.go_further_on(level, points, &met, limits)) {
                 return false;
             }
             let camera = &self.prepared.scene.camera;
@@ -776,6 +782,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             }
         }
         for (leaves, outcome) in &mut samples {
+            if matches!(&leaves[..], [past_all] if past_all.path == ROOT) {
+                // It has met nothing, to the last bit.
+                continue;
+            }
             for (i, pruned) in outcome.pruned.iter_mut().enumerate() {
                 *pruned = (1.0 - leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()).max(0.0);
             }
