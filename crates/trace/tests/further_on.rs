@@ -189,3 +189,41 @@ fn a_ray_taken_beyond_an_edge_goes_on_as_in_a_larger_body() {
     }
     assert!(tried > 5, "{tried} leaves are hardly a trial");
 }
+
+/// Which plane a ray meets is decided by straight lines, for rays beyond the planes, too: two parallel
+/// ones that meet the same have none between them that meets another. What is met for sure is met
+/// from wherever so near.
+#[test]
+fn parallel_rays_between_two_that_meet_a_plane_meet_it_too() {
+    let assembly = Assembly::new(vec![Placed::new(Pose::IDENTITY, plate(1.0))]);
+    let mut tracer = Tracer::new(&assembly, LIMITS).watched(Watcher::default());
+    let electric = [DVec3::Y.into(), DVec3::Z.into()];
+    tracer.trace(&Launch { origin: -DVec3::X, direction: DVec3::X, electric });
+    let known = tracer.watcher().branches[0];
+    let places: Vec<DVec3> = (0..12)
+        .flat_map(|x| (0..9).map(move |y| DVec3::new(0.5 * f64::from(x), 0.37 * f64::from(y), 0.0)))
+        .map(|place| place - DVec3::new(0.7, 1.9, 0.1))
+        .collect();
+    let (mut tried, mut sure) = (0, 0);
+    for (x, y) in [(1.0, 0.3), (1.0, -0.8), (-0.2, 1.0), (-1.0, -0.1)] {
+        let direction = DVec3::new(x, y, 0.2).normalize();
+        let met = |position: DVec3, slack: f64| {
+            let mut branch = known;
+            (branch.position, branch.direction) = (position, direction);
+            tracer.plane_met(&branch, slack)
+        };
+        for one in &places {
+            for other in places.iter().filter(|other| met(**other, 0.0) == met(*one, 0.0)) {
+                assert_eq!(met(one.lerp(*other, 0.4), 0.0), met(*one, 0.0), "{one} {other}");
+                tried += 1;
+            }
+            if let Some(face) = met(*one, 0.05) {
+                for moved in [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y] {
+                    assert_eq!(met(*one + 0.0499 * moved, 0.0), Some(face), "{one}");
+                }
+                sure += 1;
+            }
+        }
+    }
+    assert!(tried > 10_000 && sure > 200, "{tried} {sure}");
+}

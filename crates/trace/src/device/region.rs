@@ -378,36 +378,43 @@ impl Region {
         })
     }
 
-    /// Which of the planes around a homogeneous medium a ray meets, if none other comes closer than
-    /// `slack` (cm) along its way to it.
+    /// Which of the planes around a homogeneous medium a ray meets, if it would be the same one from
+    /// wherever within `slack` (cm) of where it is. Of a ray that starts beyond planes, the one beyond
+    /// which it is furthest back along its way: where rays come to another is then the same straight
+    /// line for all.
     #[must_use]
     pub(crate) fn plane_met(&self, ray: &InnerRay, slack: f64) -> Option<u16> {
-        let mut nearest: Option<(u16, &Face)> = None;
-        let (mut least, mut next) = (f64::INFINITY, f64::INFINITY);
+        let mut nearest: Option<(u16, &Face, [f64; 2])> = None;
+        let mut others = f64::INFINITY;
         for (index, face) in (0u16..).zip(self.faces()) {
+            let Face { plane, .. } = face;
+            let approach = ray.direction.dot(plane.normal);
             // Faces of one plane come one after the other.
-            let is_first = nearest.is_none_or(|(_, before)| before.plane != face.plane);
-            if let Some(distance) = face.plane.distance(ray.position, ray.direction)
-                && is_first
-            {
-                if distance < least {
-                    next = least;
-                    (nearest, least) = (Some((index, face)), distance);
-                } else {
-                    next = next.min(distance);
+            let is_known = nearest.is_some_and(|(_, before, _)| before.plane == *plane);
+            if is_known || approach <= f64::EPSILON {
+                continue;
+            }
+            let distance = (plane.offset - plane.normal.dot(ray.position)) / approach;
+            let doubt = slack / approach;
+            if nearest.is_none_or(|(.., [least, _])| distance < least) {
+                if let Some((.., [distance, doubt])) = nearest {
+                    others = others.min(distance - doubt);
                 }
+                nearest = Some((index, face, [distance, doubt]));
+            } else {
+                others = others.min(distance - doubt);
             }
         }
-        let (mut index, mut face) = nearest?;
-        let end = ray.position + ray.direction * least;
+        let (mut index, mut face, [distance, doubt]) = nearest?;
+        let end = ray.position + ray.direction * distance;
         let along = DVec3::Z.cross(face.plane.normal).dot(end);
-        let mut clear = next - least >= slack;
+        let mut is_clear = distance + doubt <= others;
         while face.until < along {
-            clear &= along - face.until >= slack;
+            is_clear &= along - face.until >= doubt;
             index += 1;
             face = self.faces().get(usize::from(index))?;
         }
-        (clear && face.until - along >= slack).then_some(index)
+        (is_clear && face.until - along >= doubt).then_some(index)
     }
 
     /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what

@@ -41,9 +41,9 @@ const DEEPER: f64 = 0.25;
 /// followed there.
 const DEEPEST: f64 = 1e-3;
 
-/// Rays come to no known face within so much of an edge, in terms of the tolerance: which one they
-/// meet the branch before, interpolated, cannot tell.
-const EDGE: f64 = 10.0;
+/// Rays come to no known face so close to an edge, in terms of how far the branch before may be off
+/// that is interpolated.
+const EDGE: f64 = 30.0;
 
 /// They are traced so much more exactly, for errors of theirs are not smooth.
 const CLOSER: f64 = 0.2;
@@ -487,13 +487,14 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     /// Puts the branches in place from which on four rays of a patch, of that level or a part of
     /// it, are followed, if they are strong enough: none without a level. Whether they come to known
-    /// faces where they choose between them, and no closer to edges than `slack` (cm).
+    /// faces where they choose between them, and no closer to edges than `edge` times what they may be
+    /// off.
     fn go_further_on(
         &mut self,
         level: Option<usize>,
         points: &[[f64; 2]; 4],
         first_surfaces: &[Option<(u16, u16)>; 4],
-        [least, slack]: [f64; 2],
+        [least, edge]: [f64; 2],
     ) -> bool {
         let mut all_known = true;
         let branches = level.map_or(&[][..], |level| &self.levels[level].branches);
@@ -519,8 +520,9 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let terms = terms.of(&self.levels, smooth.level);
                 let mut is_known = true;
                 if smooth.choice.is_made() {
+                    let power = branch.largest_power();
                     smooth.point_from(branch, terms, &self.coefficients);
-                    let face = self.tracers.tracers[0].plane_met(branch, slack);
+                    let face = self.tracers.tracers[0].plane_met(branch, edge * self.functions.place_tolerance(power));
                     let face = face.filter(|face| smooth.choice.has(*face));
                     if let Some(last) = chosen.last_mut() {
                         *last = face;
@@ -758,7 +760,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let level = self.levels.len().checked_sub(1);
             let least = self.prepared.limits.min_power;
             let instructions = self.instructions;
-            let limits = [least, EDGE * self.prepared.limits.tolerance];
+            let limits = [least, EDGE];
             if !instructions.with(|| self.go_further_on(level, points, &met, limits)) {
                 return false;
             }

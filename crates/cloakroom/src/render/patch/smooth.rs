@@ -124,7 +124,7 @@ impl<'a> Functions<'a> {
     }
 
     /// The largest error of places and paths of what has that power, cm.
-    fn place_tolerance(&self, power: f64) -> f64 {
+    pub fn place_tolerance(&self, power: f64) -> f64 {
         (PLACE_TOLERANCE / power).min(WEAK_PLACE_TOLERANCE) * self.prepared.limits.tolerance
     }
 
