@@ -41,9 +41,13 @@ const DEEPER: f64 = 0.25;
 /// followed there.
 const DEEPEST: f64 = 1e-3;
 
-/// Rays come to no known face so close to an edge, in terms of how far the branch before may be off
-/// that is interpolated.
-const EDGE: f64 = 30.0;
+/// So close to an edge it is not sure to which face a ray comes, in terms of how far the branch before
+/// may be off that is interpolated.
+const EDGE: f64 = 3.0;
+
+/// What comes of a face is known to this share of the least power in a ray that meets it, for those that
+/// are taken there may have more.
+const KNOWN: f64 = 0.8;
 
 /// They are traced so much more exactly, for errors of theirs are not smooth.
 const CLOSER: f64 = 0.2;
@@ -434,7 +438,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         above: Option<usize>,
         rays: &[CameraRay],
     ) -> Option<Arc<Faces>> {
-        let least = self.prepared.limits.min_power;
+        let least = KNOWN * self.prepared.limits.min_power;
         let faces = Arc::new(self.ways.faces(&here.surfaces, least)?);
         let branches = above.map_or(&[][..], |above| &self.levels[above].branches);
         let is_followed = |number: usize, ray: usize| self.followed[number] >> ray & 1 == 1;
@@ -486,9 +490,9 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     }
 
     /// Puts the branches in place from which on four rays of a patch, of that level or a part of
-    /// it, are followed, if they are strong enough: none without a level. Whether they come to known
-    /// faces where they choose between them, and no closer to edges than `edge` times what they may be
-    /// off.
+    /// it, are followed, if they are strong enough: none without a level. Whether it is sure to which
+    /// faces they come where they choose between them: no closer to edges than `edge` times what they
+    /// may be off.
     fn go_further_on(
         &mut self,
         level: Option<usize>,
@@ -496,7 +500,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         first_surfaces: &[Option<(u16, u16)>; 4],
         [least, edge]: [f64; 2],
     ) -> bool {
-        let mut all_known = true;
+        let mut are_sure = true;
         let branches = level.map_or(&[][..], |level| &self.levels[level].branches);
         let known = level.map(|level| &self.levels[level].surfaces);
         for (i, point) in points.iter().enumerate() {
@@ -518,32 +522,32 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 further_on.push(smooth.first);
                 let Some(branch) = further_on.last_mut() else { break };
                 let terms = terms.of(&self.levels, smooth.level);
-                let mut is_known = true;
+                let mut is_sure = true;
                 if smooth.choice.is_made() {
                     let power = branch.largest_power();
                     smooth.point_from(branch, terms, &self.coefficients);
-                    let face = self.tracers.tracers[0].plane_met(branch, edge * self.functions.place_tolerance(power));
-                    let face = face.filter(|face| smooth.choice.has(*face));
+                    let slack = edge * self.functions.place_tolerance(power);
+                    let face = self.tracers.tracers[0].plane_met(branch, slack);
                     if let Some(last) = chosen.last_mut() {
                         *last = face;
                     }
-                    if face.is_some_and(|face| !smooth.choice.parts_at(face)) {
+                    if face.is_some_and(|face| smooth.choice.knows(face)) {
                         further_on.pop();
                         continue;
                     }
-                    is_known = face.is_some();
+                    is_sure = face.is_some();
                 }
                 smooth.move_to(branch, terms, self.functions, &self.coefficients);
                 if branch.largest_power() < least {
                     further_on.pop();
                     continue;
                 }
-                all_known &= is_known;
+                are_sure &= is_sure;
                 branch.survive(least);
                 met.extend(smooth.met.map(|_| smooth.place));
             }
         }
-        all_known
+        are_sure
     }
 
     /// Finds out what rays of a patch share, of what so many of them have been found to meet.

@@ -50,7 +50,12 @@ impl Choice {
         has_face(self.faces, face)
     }
 
-    /// Whether rays that come to a face are to be traced from there on.
+    /// Whether all is known of what comes of a face.
+    pub fn knows(self, face: u16) -> bool {
+        self.has(face) && !self.parts_at(face)
+    }
+
+    /// Whether rays that come to a face are to be traced from there on, though it is one of these.
     pub fn parts_at(self, face: u16) -> bool {
         has_face(self.parting, face)
     }
