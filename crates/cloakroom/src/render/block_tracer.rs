@@ -109,9 +109,9 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
     }
 
     /// Divides a patch as far as is worthwhile, and does to each part, of which the tracers are to trace
-    /// some share each, what is to be done; parts that are not wanted are left out. `known` are the shares of
-    /// the tracers for which no part of the patch is to be looked at again.
-    pub(super) fn divide(
+    /// some share each, what is to be done; parts that are not wanted are left out. `known` is as
+    /// [`fit`](Self::fit) has it.
+    fn divide(
         tracers: &mut [Self],
         (patch, level): (Patch, usize),
         known: &Shares,
@@ -121,6 +121,26 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
         if !is_wanted(patch) {
             return Ok(());
         }
+        let (shares, division) = Self::fit(tracers, (patch, level), known);
+        match division {
+            Some(halves) => halves.into_iter().try_for_each(|half| {
+                Self::divide(tracers, (half, level + 1), &shares, is_wanted, take)
+            }),
+            None => {
+                let count = tracers.len();
+                take(tracers, patch, &shares.map(|share| share.unwrap_or(1.0))[..count])
+            }
+        }
+    }
+
+    /// Finds out what rays of a patch share: how much of it each of the tracers is to trace, and its
+    /// halves if it is to be divided; `known` are the shares of the tracers for which no part of the patch
+    /// is to be looked at again.
+    pub(super) fn fit(
+        tracers: &mut [Self],
+        (patch, level): (Patch, usize),
+        known: &Shares,
+    ) -> (Shares, Option<[Patch; 2]>) {
         let (mut shares, mut division) = (*known, None);
         for (tracer, share) in tracers.iter_mut().zip(&mut shares) {
             if share.is_some() {
@@ -135,14 +155,7 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
                 *share = halves.is_none().then(|| patches.traced());
             }
         }
-        if let Some(halves) = division {
-            return halves.into_iter().try_for_each(|half| {
-                Self::divide(tracers, (half, level + 1), &shares, is_wanted, take)
-            });
-        }
-        let traced = shares.map(|share| share.unwrap_or(1.0));
-        let count = tracers.len();
-        take(tracers, patch, &traced[..count])
+        (shares, division)
     }
 
     /// Interpolates the leaves of the rays through four points of the picture, a block of a patch of

@@ -23,11 +23,13 @@ pub struct Estimate {
 /// How long the image of a scene is looked at.
 const LONGEST: Duration = Duration::from_secs(2);
 
-/// How long the samples of a part of a patch are looked at; one block is in any case.
-const EACH: Duration = Duration::from_millis(40);
+/// How long the samples of a part of a patch are looked at, if its blocks take as long as others did: were
+/// it ended by how long its own take, costly ones would count too often. One block is looked at in any
+/// case.
+const EACH: f64 = 0.04;
 
-/// Patches that are looked at, if there is time.
-const MOST_PATCHES: usize = 512;
+/// So many parts of patches are looked at, if there is time.
+const MOST_PARTS: usize = 512;
 
 /// Blocks of a part of a patch that are exposed, of one sample each.
 const BLOCKS: usize = 24;
@@ -40,8 +42,13 @@ fn walks_of<const N: usize>(tracers: &[BlockTracer<'_, N>]) -> f64 {
     tracers.iter().map(|tracer| tracer.walks).sum()
 }
 
-/// Estimates what rendering the image will take: patches here and there in the picture are rendered
-/// in part and timed, as many as two seconds take.
+/// How many rays have been followed at nodes.
+fn walks_at_nodes<const N: usize>(tracers: &[BlockTracer<'_, N>]) -> f64 {
+    tracers.iter().map(BlockTracer::walks_at_nodes).sum()
+}
+
+/// Estimates what rendering the image will take: patches here and there in the picture are divided, as
+/// for that, down to one part of each, which is rendered and timed in part; as many as two seconds take.
 #[must_use]
 pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
     match prepared.scene.camera.polarizer.amplitudes() {
@@ -58,62 +65,65 @@ fn estimate_of<const N: usize>(prepared: &PreparedScene<'_>, detection: Detectio
     let (mut exposer, mut tracers) = Exposer::new(prepared, [&detection, &colors]);
     let side = BlockTracer::common_side(&tracers);
     let [columns, rows] = size.map(|pixels| pixels.div_ceil(side));
+    let patches = columns * rows;
     let start = Instant::now();
-    let (mut looked_at, mut seconds, mut walks) = (0.0, 0.0, 0.0);
-    for number in 0..(columns * rows).min(MOST_PATCHES) {
-        if number > 0 && start.elapsed() >= LONGEST {
-            break;
-        }
-        let place = (number + 1) * STRIDE % (columns * rows);
+    let (mut parts, mut seconds, mut walks) = (0.0, 0.0, 0.0);
+    // How many blocks have been exposed, and what that took.
+    let (mut exposed, mut exposing) = (0.0, 0.0);
+    while parts < MOST_PARTS as f64 && (parts == 0.0 || start.elapsed() < LONGEST) {
+        let number = parts as usize;
+        let place = (number + 1) * STRIDE % patches;
         let corner = [place % columns * side, place / columns * side];
-        let is_seen = |patch: Patch| (0..2).all(|i| patch.corner[i] < size[i]);
-        let began = Instant::now();
-        // What exposing the blocks took, and would take of all.
-        let (mut exposing, mut all) = (0.0, 0.0);
-        let mut expose = |tracers: &mut [BlockTracer<'_, N>], patch: Patch, traced: &[f64]| {
-            let (began, walked) = (Instant::now(), walks_of(tracers));
-            let [across, down] =
-                patch.part_of([0; 2], size).map(|range| (range.start, range.len().div_ceil(2)));
-            let blocks = across.1 * down.1;
-            let step = blocks.div_ceil(BLOCKS);
-            let mut count = 0.0;
-            // From the middle of the first step on: columns and rows are met evenly.
-            let numbers = (step / 2..blocks).step_by(step);
-            let mut look = |block: usize| {
-                let corner = [across.0 + block % across.1 * 2, down.0 + block / across.1 * 2];
-                exposer.expose_block(tracers, corner, 0, traced, &mut Default::default());
-            };
-            for block in numbers.clone() {
-                look(block);
-                count += 1.0;
-                // Where rays take long, those of other patches say more.
-                if began.elapsed() >= EACH {
-                    break;
-                }
+        let mut patch = Patch { corner, size: [side; 2] };
+        // Of every two halves one is taken, the next time in this patch another, and counts twice.
+        let mut turns = (number / patches) ^ (place.wrapping_mul(STRIDE) >> 7);
+        let (mut level, mut weight, mut shares) = (0, 1.0, [None; MOST_TRACERS]);
+        loop {
+            let (began, walked) = (Instant::now(), walks_at_nodes(&tracers));
+            let (found, division) = BlockTracer::fit(&mut tracers, (patch, level), &shares);
+            seconds += weight * began.elapsed().as_secs_f64();
+            walks += weight * (walks_at_nodes(&tracers) - walked);
+            shares = found;
+            let Some([first, second]) = division else { break };
+            let is_seen = (0..2).all(|axis| second.corner[axis] < size[axis]);
+            patch = if is_seen && turns & 1 == 1 { second } else { first };
+            if is_seen {
+                weight *= 2.0;
+                turns >>= 1;
             }
-            let took = began.elapsed();
-            // What is made or fetched once, when it is first asked for, is not done for each block.
-            let (looks, again) = if took < EACH {
-                numbers.for_each(&mut look);
-                (2.0, began.elapsed() - took)
-            } else {
-                (1.0, took)
-            };
-            let scale = blocks as f64 / count * f64::from(camera.samples);
-            exposing += began.elapsed().as_secs_f64();
-            all += took.as_secs_f64() + again.as_secs_f64() * (scale - 1.0);
-            walks += (walks_of(tracers) - walked) * scale / looks;
-            Ok(())
+            level += 1;
+        }
+        let traced = shares.map(|share| share.unwrap_or(1.0));
+        let traced = &traced[..tracers.len()];
+        let [across, down] =
+            patch.part_of([0; 2], size).map(|range| (range.start, range.len().div_ceil(2)));
+        let blocks = across.1 * down.1;
+        let wanted = if exposed == 0.0 { 1.0 } else { EACH * exposed / exposing };
+        let step = blocks.div_ceil((wanted as usize).clamp(1, BLOCKS));
+        // From the middle of the first step on: columns and rows are met evenly.
+        let numbers = (step / 2..blocks).step_by(step);
+        let (began, walked) = (Instant::now(), walks_of(&tracers));
+        let mut look = |block: usize| {
+            let corner = [across.0 + block % across.1 * 2, down.0 + block / across.1 * 2];
+            exposer.expose_block(&mut tracers, corner, 0, traced, &mut Default::default());
         };
-        let patch = Patch { corner, size: [side; 2] };
-        let unknown = &[None; MOST_TRACERS];
-        let looked = BlockTracer::divide(&mut tracers, (patch, 0), unknown, &is_seen, &mut expose);
-        debug_assert!(looked.is_ok(), "nothing stops it");
-        seconds += began.elapsed().as_secs_f64() - exposing + all;
-        looked_at += 1.0;
+        numbers.clone().for_each(&mut look);
+        let took = began.elapsed().as_secs_f64();
+        exposed += numbers.len() as f64;
+        exposing += took;
+        // What is made or fetched once, when it is first asked for, is not done for each block.
+        let (looks, again) = if took < EACH {
+            numbers.clone().for_each(&mut look);
+            (2.0, began.elapsed().as_secs_f64() - took)
+        } else {
+            (1.0, took)
+        };
+        let scale = blocks as f64 / numbers.len() as f64 * f64::from(camera.samples);
+        seconds += weight * again * scale;
+        walks += weight * (walks_of(&tracers) - walked) * scale / looks;
+        parts += 1.0;
     }
-    walks += tracers.iter().map(BlockTracer::walks_at_nodes).sum::<f64>();
-    let scale = (columns * rows) as f64 / looked_at;
+    let scale = patches as f64 / parts;
     let [width, height] = camera.resolution;
     Estimate {
         seconds: seconds * scale / rayon::current_num_threads() as f64,
