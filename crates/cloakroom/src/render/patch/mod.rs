@@ -52,9 +52,9 @@ const KNOWN: f64 = 0.8;
 /// They are traced so much more exactly, for errors of theirs are not smooth.
 const CLOSER: f64 = 0.2;
 
-/// What a ray at a node costs in terms of a sample's, where pixels have one and where they have more
-/// (measured: more divisions would save rays, and cost each sample the terms of more patches).
-const COST: [f64; 2] = [2.5, 4.0];
+/// What a ray at a node costs in terms of a sample's (measured: more divisions would save rays, and cost
+/// each sample the terms of more patches).
+const COST: f64 = 4.0;
 
 /// What it costs at least, as a share of that, for light has to come to where rays part.
 const LEAST_COST: f64 = 0.1;
@@ -224,7 +224,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let side = largest_side(prepared)?;
         let grids = [MOST - 2, MOST - 1, MOST].map(Grid::new);
         let nodes = grids[grid_of(Patch { corner: [0; 2], size: [side; 2] })].points.len();
-        if side * side * rays_per_pixel as usize <= (cost(rays_per_pixel) * nodes as f64) as usize {
+        if side * side * rays_per_pixel as usize <= (COST * nodes as f64) as usize {
             return None;
         }
         let Limits { min_power, tolerance } = prepared.limits;
@@ -279,7 +279,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let samples = width * height * self.rays_per_pixel as usize;
         let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
         let rays = 2 * self.grid(halves[0]).points.len();
-        let cost = cost(self.rays_per_pixel) * traced.max(LEAST_COST);
+        let cost = COST * traced.max(LEAST_COST);
         (gain > cost * rays as f64).then_some(halves)
     }
 
@@ -850,11 +850,6 @@ impl TermsOfLevels {
     fn of<const N: usize>(&mut self, levels: &[Level<N>], level: usize) -> &Terms {
         self.terms[level].get_or_insert_with(|| Terms::at(levels[level].patch.place(self.point)))
     }
-}
-
-/// What a ray at a node costs in terms of a sample's.
-fn cost(rays_per_pixel: u32) -> f64 {
-    COST[usize::from(rays_per_pixel > 1)]
 }
 
 /// Which of the grids is that of a patch.

@@ -19,6 +19,10 @@ const PLACE_TOLERANCE: f64 = 0.3;
 /// The same whatever goes there.
 const WEAK_PLACE_TOLERANCE: f64 = 100.0;
 
+/// The largest error of the direction and wave vector of a branch, in terms of that of a leaf's direction:
+/// interfaces of media that are anisotropic by far make more of it.
+const BRANCH: f64 = 0.03;
+
 /// The share of each of them that terms which are left out may have.
 const LEFT_OUT: f64 = 0.2;
 
@@ -274,7 +278,7 @@ impl<const N: usize> Interpolated for Branch<N> {
 
     fn tolerances(&self, kept: Functions<'_>, power: f64) -> Lanes {
         let [place, power] = [kept.place_tolerance(power), kept.power_tolerance()];
-        let direction = place / REACH;
+        let direction = BRANCH * place / REACH;
         let places = [place, place, place, direction, direction, direction];
         let rest = [direction, direction, direction, place, place].into_iter();
         let pulse = place.max(kept.pulse_tolerance);
@@ -302,12 +306,12 @@ impl<const N: usize> Interpolated for Branch<N> {
     fn agrees(&self, other: &Self, kept: Functions<'_>) -> bool {
         let tolerance = kept.place_tolerance(other.largest_power());
         let power_tolerance = kept.power_tolerance();
-        let place = |branch: &Self| branch.position + branch.direction * REACH;
         let paths = |branch: &Self| [branch.optical_path, branch.backwards];
         let late = self.dispersion - other.dispersion;
         self.is_like(other)
-            && place(self).distance(place(other)) <= tolerance
-            && self.wave_vector.distance(other.wave_vector) * REACH <= tolerance
+            && self.position.distance(other.position) <= tolerance
+            && self.direction.distance(other.direction) * REACH <= BRANCH * tolerance
+            && self.wave_vector.distance(other.wave_vector) * REACH <= BRANCH * tolerance
             && all_near(&self.power, &other.power, power_tolerance)
             && all_near(&paths(self), &paths(other), tolerance)
             && (!kept.group_paths || late.abs() <= tolerance.max(kept.pulse_tolerance))
