@@ -13,6 +13,9 @@ use optics::propagation::{PathPoint, VirtualPoint};
 use optics::wave::ComplexVector;
 use std::hash::Hash;
 
+/// The fingerprint of a launched ray that has met nothing.
+pub const LAUNCHED: u64 = 0;
+
 /// Where a branch runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
@@ -108,7 +111,7 @@ impl<const N: usize> Branch<N> {
             departed: None,
             standstills: 0,
             met_device: false,
-            path: 0,
+            path: LAUNCHED,
             mode: ModeKind::Shared,
             virtual_point: None,
         }

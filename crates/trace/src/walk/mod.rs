@@ -21,7 +21,7 @@ mod start;
 mod surfaces;
 mod tracer;
 
-pub use branch::Branch;
+pub use branch::{Branch, LAUNCHED};
 pub use coherence::{Coherence, Pair, Way};
 pub use first_face::FirstFace;
 pub use four::FourTracers;

@@ -141,11 +141,11 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let surface = device.structure.surfaces.get(usize::from(number))?;
         let position = device.pose.to_local(branch.position);
         let direction = device.pose.vector_to_local(branch.direction);
-        let distance = surface.plane()?.distance(position, direction)?;
+        let plane = surface.plane()?;
         Some(SurfaceHit {
             surface: number,
-            distance,
-            outward: -surface.plane()?.normal,
+            distance: plane.distance(position, direction)?,
+            outward: -plane.normal,
             far: surface.far,
             coating: surface.coating,
         })

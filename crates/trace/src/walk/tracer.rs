@@ -1,6 +1,6 @@
 //! The walk along the ray tree.
 
-use super::branch::{Branch, Place, largest};
+use super::branch::{Branch, LAUNCHED, Place, largest};
 use super::coherence::Joining;
 use super::draw::{Draw, MOST_EVENTS_DRAWN};
 use super::{Coherence, Leaf, LeafEnd, Outcome, PathRecorder};
@@ -57,9 +57,6 @@ const MOST_POWER: f64 = 1e3;
 /// A branch that is taken further on than its ray starts may be so far out of its region, in terms
 /// of the tolerance.
 const MOST_BEYOND: f64 = 100.0;
-
-/// The fingerprint of the launched ray.
-const LAUNCHED: u64 = 0;
 
 /// What rounding leaves of a wave that is not there.
 const NO_POWER: f64 = 1e-24;

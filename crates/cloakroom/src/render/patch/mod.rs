@@ -17,7 +17,7 @@ use super::detection::Detection;
 use super::prepared_scene::PreparedScene;
 use crate::assembly::Placed;
 use crate::scene::CameraRay;
-use crate::trace::{Branch, FourTracers, Leaf, Limits, Outcome, TraceStats, Tracer};
+use crate::trace::{Branch, FourTracers, LAUNCHED, Leaf, Limits, Outcome, TraceStats, Tracer};
 use arrayvec::ArrayVec;
 use glam::DVec3;
 use grid::{Grid, LANES, MOST, Terms, bits};
@@ -25,7 +25,7 @@ use instructions::Instructions;
 use smooth::{Functions, Rough, Smooth, smooth};
 use std::ops::Range;
 use std::sync::Arc;
-use ways::{Choice, Faces, LeftOut, Origin, ROOT, Start, Surfaces, Trail, Ways};
+use ways::{Choice, Faces, LeftOut, Origin, Start, Surfaces, Trail, Ways};
 
 /// Width and height of the largest patches, pixels.
 pub(super) const SIDE: usize = 32;
@@ -474,7 +474,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let beside = Some((Arc::clone(&faces), ray));
                 self.beside.tracers[i].recorder().beside = beside;
             }
-            let launched = std::array::from_fn(|i| faces.beside(ROOT, at + ray(i)) != 0);
+            let launched = std::array::from_fn(|i| faces.beside(LAUNCHED, at + ray(i)) != 0);
             self.beside.trace_further_on(&launches, launched, &self.further_on);
             for (i, tracer) in self.beside.tracers.iter_mut().enumerate() {
                 if i < four.len() {
@@ -568,7 +568,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let is_launched = above.is_none_or(|above| above.launched);
         let known_borders = above.and_then(|above| above.borders);
         here.choice = above.map_or(Choice::default(), |above| above.choice);
-        let root = Start { path: ROOT, rays: launched, faces: here.choice.faces };
+        let root = Start { path: LAUNCHED, rays: launched, faces: here.choice.faces };
         let starts = is_launched.then_some(root).into_iter();
         let starts = starts.chain(branches.iter().zip(&self.followed).map(|(branch, rays)| {
             Start { path: branch.first.path, rays: *rays, faces: branch.choice.faces }
@@ -580,7 +580,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         // Rays may part where they were thought to choose.
         self.ways.drop_lost(&mut leaves, &mut branches);
         if is_launched {
-            here.choice = self.ways.choice_in_part(ROOT, here.choice, faces);
+            here.choice = self.ways.choice_in_part(LAUNCHED, here.choice, faces);
         }
         for branch in &mut branches {
             branch.choice = self.ways.choice_in_part(branch.first.path, branch.choice, faces);
@@ -597,7 +597,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         here.traced = (self.ways.borders_to_trace() / borders).min(1.0);
         here.launched = match here.choice.is_made() {
             true => here.choice.parting != 0,
-            false => self.ways.parts(ROOT),
+            false => self.ways.parts(LAUNCHED),
         };
         here.left_out = LeftOut::new(self.ways.met());
         let find = |path: u64, level_of: usize, known: Option<u64>| {
@@ -637,7 +637,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         });
         leaves.retain(|leaf| match leaf.first.path {
             // Of a launched ray that is traced, so is the leaf without a device.
-            ROOT => here
+            LAUNCHED => here
                 .past_all()
                 .is_some_and(|place| here.choice.is_made() && !here.choice.parts_at(place)),
             path => is_known(path, leaf.level),
@@ -656,12 +656,12 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let paths: Vec<u64> = branches.iter().map(|branch| branch.first.path).collect();
         let given = |path: u64| match self.ways.chosen_on_the_way(path) {
             Ok(chosen) => Some(chosen),
-            Err(ROOT) if path == ROOT => Some((ROOT, here.past_all()?)),
+            Err(LAUNCHED) if path == LAUNCHED => Some((LAUNCHED, here.past_all()?)),
             Err(start) => starts.iter().find(|known| known.path == start)?.given,
         };
         // The launched ray comes before all branches.
         let number_of = |(chooser, _): (u64, u16)| match chooser {
-            ROOT => Some(0),
+            LAUNCHED => Some(0),
             _ => Some(1 + paths.iter().position(|path| *path == chooser)?),
         };
         let chooser = |given: Option<(u64, u16)>| given.and_then(number_of).unwrap_or(usize::MAX);
@@ -690,7 +690,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             if power < self.prepared.limits.min_power || !self.ways.has(path) {
                 continue;
             }
-            if path != ROOT && self.ways.choice(path).is_made() {
+            if path != LAUNCHED && self.ways.choice(path).is_made() {
                 // At some face it ends.
                 self.ways.part_at(path);
                 continue;
@@ -720,7 +720,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         smooth_branches: &mut Vec<Smooth<Branch<N>>>,
     ) {
         let mut known: Vec<u64> = smooth_branches.iter().map(|branch| branch.first.path).collect();
-        known.push(ROOT);
+        known.push(LAUNCHED);
         loop {
             let parting = self.ways.parting().filter(|path| !known.contains(path));
             let parting: Vec<u64> = parting.collect();
@@ -788,7 +788,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             }
         }
         for (leaves, outcome) in &mut samples {
-            if matches!(&leaves[..], [past_all] if past_all.path == ROOT) {
+            if matches!(&leaves[..], [past_all] if past_all.path == LAUNCHED) {
                 // It has met nothing, to the last bit.
                 continue;
             }

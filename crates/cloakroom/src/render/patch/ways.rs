@@ -2,7 +2,7 @@
 
 use super::grid::bits;
 use super::smooth::Smooth;
-use crate::trace::{Branch, Leaf, PathRecorder, PathSegment};
+use crate::trace::{Branch, LAUNCHED, Leaf, PathRecorder, PathSegment};
 use arrayvec::ArrayVec;
 use std::sync::Arc;
 
@@ -164,7 +164,7 @@ impl<const N: usize> PathRecorder<N> for Trail<N> {
 
     fn arrives(&mut self, path: u64, face: u16) {
         // A ray that starts in a medium goes on from there.
-        if path != ROOT {
+        if path != LAUNCHED {
             self.arrivals.push(Arrival { path, face, ray: 0 });
         }
     }
@@ -260,9 +260,6 @@ impl<const N: usize> Default for Ways<N> {
     }
 }
 
-/// Of the launched ray.
-pub(super) const ROOT: u64 = 0;
-
 impl<const N: usize> Ways<N> {
     pub fn clear(&mut self) {
         self.steps.clear();
@@ -281,7 +278,7 @@ impl<const N: usize> Ways<N> {
 
     /// Takes in which of several surfaces a launched ray meets.
     pub fn launch(&mut self, ray: usize, surface: u16) {
-        let arrival = Arrival { path: ROOT, face: surface, ray };
+        let arrival = Arrival { path: LAUNCHED, face: surface, ray };
         self.arrivals.iter_mut().for_each(|arrivals| arrivals.push(arrival));
     }
 
@@ -302,7 +299,7 @@ impl<const N: usize> Ways<N> {
         for same in of_rays.chunk_by(|(one, ..), (other, ..)| one == other) {
             // Of a branch that crosses seams there is more than one of a ray.
             let is_once = same.windows(2).all(|two| two[0].1 != two[1].1);
-            if is_once && same.iter().all(|(.., face)| u64::from(*face) < u64::from(u64::BITS)) {
+            if is_once && same.iter().all(|(.., face)| u32::from(*face) < u64::BITS) {
                 met.push((same[0].0, bits(same.iter().map(|(.., face)| usize::from(*face)))));
             }
         }
@@ -325,7 +322,7 @@ impl<const N: usize> Ways<N> {
         }
         if let Some(place) = first_surfaces.iter().position(Option::is_none) {
             // Past all devices there is a leaf.
-            leading.push((ROOT, 1 << place & among(&met, ROOT)));
+            leading.push((LAUNCHED, 1 << place & among(&met, LAUNCHED)));
         }
         leading.sort_unstable();
         leading.dedup_by(|later, first| {
@@ -735,12 +732,12 @@ mod tests {
     /// Two rays that go 1, then 2 or 3, and 1, 4, 5 and 6; 12 and 13 are weak.
     fn two_rays() -> Ways<1> {
         let mut ways = Ways::default();
-        let same = [(ROOT, 1, 1.0), (1, 4, 0.2), (4, 5, 0.1), (5, 6, 0.1)];
+        let same = [(LAUNCHED, 1, 1.0), (1, 4, 0.2), (4, 5, 0.1), (5, 6, 0.1)];
         for (ray, other) in [(0, 2), (1, 3)] {
             went_on(&mut ways, ray, &same);
             went_on(&mut ways, ray, &[(1, other, 0.5), (other, 10 + other, 1e-5)]);
         }
-        let start = Start { path: ROOT, rays: 3, faces: 0 };
+        let start = Start { path: LAUNCHED, rays: 3, faces: 0 };
         ways.gather(2, [start].into_iter(), None, 1e-4);
         ways
     }
@@ -750,11 +747,11 @@ mod tests {
         let mut ways = two_rays();
         assert_eq!(ways.some_have().collect::<Vec<_>>(), [1 << 0, 1 << 1]);
         assert_eq!(ways.parting().collect::<Vec<_>>(), [1]);
-        assert!([ROOT, 1, 4, 5, 6].iter().all(|path| ways.has(*path)));
+        assert!([LAUNCHED, 1, 4, 5, 6].iter().all(|path| ways.has(*path)));
         assert!([2, 3, 12, 13].iter().all(|path| !ways.has(*path)));
         // Traced from 1 on, rays meet 4, and 2 or 3, which are traced, too.
         assert_eq!(ways.met().collect::<Vec<_>>(), [4]);
-        assert_eq!([1, 4, 6].map(|path| ways.met_on_the_way(path)), [Err(ROOT), Ok(4), Ok(4)]);
+        assert_eq!([1, 4, 6].map(|path| ways.met_on_the_way(path)), [Err(LAUNCHED), Ok(4), Ok(4)]);
         assert_eq!((ways.borders(), ways.borders_to_trace()), (6.0, 2.0));
         // If 5 is to be traced from 4 on, so is all but the root and 6.
         ways.part_before(5);
@@ -770,7 +767,7 @@ mod tests {
         let own = [(4, 2), (5, 3)];
         for (ray, (face, to)) in own.into_iter().enumerate() {
             let mut trail = Trail::default();
-            trail.went_on(ROOT, 1, 1.0);
+            trail.went_on(LAUNCHED, 1, 1.0);
             trail.arrives(1, face);
             trail.went_on(1, to, 0.5);
             ways.add(ray, &mut trail);
@@ -785,10 +782,10 @@ mod tests {
             assert!(trail.went_on(1, to, 0.5) && !trail.went_on(1, 9, 0.5), "9 is not known");
             ways.add(ray, &mut trail);
         }
-        let start = Start { path: ROOT, rays: 3, faces: 0 };
+        let start = Start { path: LAUNCHED, rays: 3, faces: 0 };
         ways.gather(2, [start].into_iter(), Some(&faces), 1e-4);
         assert_eq!((ways.choice(1).faces, ways.choice(1).parting), (0b11_0000, 0));
-        assert!([ROOT, 1, 2, 3].iter().all(|path| ways.has(*path)));
+        assert!([LAUNCHED, 1, 2, 3].iter().all(|path| ways.has(*path)));
         assert_eq!([2, 3].map(|path| ways.chosen_on_the_way(path)), [Ok((1, 4)), Ok((1, 5))]);
         assert_eq!((ways.parting().collect::<Vec<_>>(), ways.met().count()), (vec![1], 0));
         assert_eq!((ways.borders(), ways.borders_to_trace()), (3.0, 0.0));
@@ -804,12 +801,12 @@ mod tests {
     #[test]
     fn what_comes_of_a_start_is_forgotten_with_it() {
         let mut ways = Ways::<1>::default();
-        went_on(&mut ways, 0, &[(7, 8, 0.1), (8, 9, 0.1), (ROOT, 1, 1.0)]);
-        let starts = [ROOT, 7].map(|path| Start { path, rays: 1, faces: 0 });
+        went_on(&mut ways, 0, &[(7, 8, 0.1), (8, 9, 0.1), (LAUNCHED, 1, 1.0)]);
+        let starts = [LAUNCHED, 7].map(|path| Start { path, rays: 1, faces: 0 });
         ways.gather(1, starts.into_iter(), None, 1e-4);
         assert_eq!(ways.met_on_the_way(9), Err(7));
         ways.forget(7);
-        assert!([7, 8, 9].iter().all(|path| !ways.has(*path)) && ways.has(1) && ways.has(ROOT));
+        assert!([7, 8, 9].iter().all(|path| !ways.has(*path)) && ways.has(1) && ways.has(LAUNCHED));
     }
 
     #[test]
