@@ -379,9 +379,9 @@ impl Region {
     }
 
     /// Which of the planes around a homogeneous medium a ray meets, if it would be the same one from
-    /// wherever within `slack` (cm) of where it is. Of a ray that starts beyond planes, the one beyond
-    /// which it is furthest back along its way: where rays come to another is then the same straight
-    /// line for all.
+    /// wherever within `slack` (cm) of where it is. It may start beyond planes: the distances to those
+    /// are negative, and the least counts. So parallel rays that meet one plane and those that meet
+    /// another are on two sides of one straight line, however far they are from the region.
     #[must_use]
     pub(crate) fn plane_met(&self, ray: &InnerRay, slack: f64) -> Option<u16> {
         let mut nearest: Option<(u16, &Face, [f64; 2])> = None;
