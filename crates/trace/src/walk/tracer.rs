@@ -428,8 +428,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         false
     }
 
-    /// Which of the planes around its region a branch meets, if its region is between planes and no
-    /// other comes closer than `slack` (cm) to it there, along its way.
+    /// Which of the planes around its region a branch meets, if its region is between planes and it
+    /// would be the same one from wherever within `slack` (cm) of where it is; it may be beyond them.
     #[must_use]
     pub fn plane_met(&self, branch: &Branch<N>, slack: f64) -> Option<u16> {
         let Place::Region { device, region } = branch.place else { return None };

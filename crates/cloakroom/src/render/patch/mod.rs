@@ -49,7 +49,7 @@ const EDGE: f64 = 3.0;
 /// are taken there may have more.
 const KNOWN: f64 = 0.8;
 
-/// They are traced so much more exactly, for errors of theirs are not smooth.
+/// Rays at the nodes are traced so much more exactly than samples, for errors of theirs are not smooth.
 const CLOSER: f64 = 0.2;
 
 /// What a ray at a node costs in terms of a sample's (measured: more divisions would save rays, and cost
