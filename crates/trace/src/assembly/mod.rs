@@ -225,6 +225,19 @@ impl Assembly {
         self.first_hit_of(guests, origin, direction, departed)
     }
 
+    /// Of the nearest surface ahead of a ray in air its device, its number there, and how far it is.
+    #[inline(always)]
+    pub(crate) fn first_surface(&self, origin: DVec3, direction: DVec3) -> Option<(u16, u16, f64)> {
+        // In each case by itself: every sample of a picture asks for it, and all that a hit is would be copied.
+        if self.simple {
+            return self
+                .hit_of(0, origin, direction, None)
+                .map(|hit| (0, hit.surface, hit.distance));
+        }
+        let (device, hit) = self.first_hit(origin, direction, None)?;
+        Some((device, hit.surface, hit.distance))
+    }
+
     /// The nearest surface of some devices ahead of a ray. Surfaces of other devices than the
     /// departed one that rounding has put a hair behind the ray are met, too, at the distance 0.
     fn first_hit_of(

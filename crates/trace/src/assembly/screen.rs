@@ -92,9 +92,11 @@ impl Screen {
     #[inline]
     pub fn image_position(&self, direction: DVec3) -> impl Fn(DVec3) -> [f64; 2] {
         let front = self.parts(direction).x.signum();
+        let [width, height] = self.size();
+        let [to_right, down] = [front / width, -1.0 / height];
         move |point| {
             let DVec3 { y: up, z: across, .. } = self.parts(point - self.middle);
-            [0.5 + across * front / (2.0 * self.half_width), 0.5 - up / (2.0 * self.half_height)]
+            [0.5 + across * to_right, 0.5 + up * down]
         }
     }
 

@@ -69,14 +69,14 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// Whether a ray in air runs on through air to the screen, or for ever.
     #[must_use]
     pub fn meets_nothing(&self, origin: DVec3, direction: DVec3) -> bool {
-        self.surface_ahead(origin, direction, None).is_none()
+        self.first_surface(origin, direction).is_none()
     }
 
     /// The device and its surface that a ray in air meets first, before the screen.
     #[must_use]
     pub fn first_surface(&self, origin: DVec3, direction: DVec3) -> Option<(u16, u16)> {
-        let (device, hit) = self.surface_ahead(origin, direction, None)?;
-        Some((device, hit.surface))
+        let (device, surface, distance) = self.assembly.first_surface(origin, direction)?;
+        self.comes_before_screen(origin, direction, distance).then_some((device, surface))
     }
 
     /// Follows a branch in air to the next surface; whether it goes on from there.
@@ -564,11 +564,15 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         departed: Option<DepartedSurface>,
     ) -> Option<(u16, SurfaceHit)> {
         let hit = self.assembly.first_hit(position, direction, departed)?;
+        self.comes_before_screen(position, direction, hit.1.distance).then_some(hit)
+    }
+
+    /// Whether a ray comes so far before it meets the screen: of two that touch, that is met.
+    fn comes_before_screen(&self, position: DVec3, direction: DVec3, distance: f64) -> bool {
         let screen = self.screen.as_ref();
         let screen = screen.and_then(|screen| screen.hit(position, direction, 0.0));
-        // Of two that touch, the screen is met.
         let slack = if self.screen_touches { slack_at(position) } else { 0.0 };
-        screen.is_none_or(|distance| hit.1.distance + slack < distance).then_some(hit)
+        screen.is_none_or(|to_screen| distance + slack < to_screen)
     }
 
     fn film<'f>(&self, between: Between<'f>) -> Film<'f> {
