@@ -2,28 +2,49 @@
 
 use std::f64::consts::PI;
 
-/// Nodes along a side at most.
+/// How nodes lie in a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// As many across as down.
+    Square,
+    /// More down than across: for patches that have become low because leaves vary fast down the picture.
+    Low,
+    /// The other way round.
+    Narrow,
+}
+
+/// Nodes along a side of a square grid at most.
 pub(super) const MOST: usize = 5;
 
-/// Terms of a polynomial at most.
-const MOST_TERMS: usize = MOST * MOST;
+/// Nodes along the sides of others, across and down a low patch.
+const LOW: [usize; 2] = [4, 8];
 
-/// The degrees, across and down the patch, of the Chebyshev polynomials that make each term: the
-/// lower their sum, the earlier.
-const DEGREES: [[usize; 2]; MOST_TERMS] = degrees();
+/// Nodes at most, and terms of a polynomial.
+pub(super) const MOST_NODES: usize = LOW[0] * LOW[1];
 
-const fn degrees() -> [[usize; 2]; MOST_TERMS] {
-    let mut degrees = [[0; 2]; MOST_TERMS];
+/// The degrees, across and down the patch, of the Chebyshev polynomials that make each term.
+type Degrees = [[usize; 2]; MOST_NODES];
+
+const SQUARE_DEGREES: Degrees = degrees([MOST; 2]);
+const LOW_DEGREES: Degrees = degrees(LOW);
+
+/// All below so many across and down: the lower their sum, in terms of the highest of each, the earlier.
+const fn degrees(counts: [usize; 2]) -> Degrees {
+    let [across, down] = [counts[0] - 1, counts[1] - 1];
+    // What is not filled is above the highest.
+    let mut degrees = [counts; MOST_NODES];
     let (mut term, mut sum) = (0, 0);
-    while sum < 2 * MOST - 1 {
-        let mut across = 0;
-        while across <= sum {
-            let down = sum - across;
-            if across < MOST && down < MOST {
-                degrees[term] = [across, down];
-                term += 1;
+    while sum <= 2 * across * down {
+        let mut i = 0;
+        while i <= across {
+            if i * down <= sum && (sum - i * down).is_multiple_of(across) {
+                let j = (sum - i * down) / across;
+                if j <= down {
+                    degrees[term] = [i, j];
+                    term += 1;
+                }
             }
-            across += 1;
+            i += 1;
         }
         sum += 1;
     }
@@ -33,66 +54,100 @@ const fn degrees() -> [[usize; 2]; MOST_TERMS] {
 /// Where rays are traced in a patch.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
-    /// Nodes along a side.
-    side: usize,
+    /// Nodes across and down.
+    counts: [usize; 2],
     /// The nodes, row by row, and then the points between them where what a polynomial says is
     /// compared with what is true: all along the edges, and every other one within.
     pub points: Vec<[f64; 2]>,
     /// The terms at the latter.
     pub checks: Vec<Terms>,
+    /// The degrees of each term, across and down.
+    degrees: Degrees,
     /// What each node counts for in each term.
     shares: Vec<f64>,
 }
 
 impl Grid {
-    /// So many Chebyshev-Lobatto points along a side: the corners are among them, so that a straight
+    /// Of so many nodes along a side.
+    pub fn square(side: usize) -> Self {
+        Self::new(Shape::Square, [side; 2])
+    }
+
+    /// For low patches.
+    pub fn low() -> Self {
+        Self::new(Shape::Low, LOW)
+    }
+
+    /// For narrow ones.
+    pub fn narrow() -> Self {
+        Self::new(Shape::Narrow, [LOW[1], LOW[0]])
+    }
+
+    /// So many Chebyshev-Lobatto points across and down: the corners are among them, so that a straight
     /// cut through the patch parts them.
-    pub fn new(side: usize) -> Self {
-        let gaps = side - 1;
-        let angle = |k: usize| PI * (gaps - k) as f64 / gaps as f64;
-        let along: Vec<f64> = (0..side).map(|k| angle(k).cos()).collect();
-        let middle = |k: usize| 0.5 * (along[k] + along[k + 1]);
-        let nodes = along.iter().flat_map(|&y| along.iter().map(move |&x| [x, y]));
-        let edges = (0..gaps).map(middle).flat_map(|m| [[m, -1.0], [m, 1.0], [-1.0, m], [1.0, m]]);
-        let within = (0..gaps).flat_map(|j| (0..gaps).map(move |i| (i, j)));
-        let within = within.filter(|(i, j)| (i + j) % 2 == 0).map(|(i, j)| [middle(i), middle(j)]);
-        let points: Vec<_> = nodes.chain(edges).chain(within).collect();
-        let checks = points[side * side..].iter().map(|point| Terms::at(*point)).collect();
+    fn new(shape: Shape, counts: [usize; 2]) -> Self {
+        let gaps = counts.map(|count| count - 1);
+        let angle = |axis: usize, k: usize| PI * (gaps[axis] - k) as f64 / gaps[axis] as f64;
+        let [across, down] =
+            [0, 1].map(|axis| (0..counts[axis]).map(|k| angle(axis, k).cos()).collect::<Vec<_>>());
+        let middles = |along: &[f64]| -> Vec<f64> {
+            along.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect()
+        };
+        let between = [middles(&across), middles(&down)];
+        let nodes = down.iter().flat_map(|&y| across.iter().map(move |&x| [x, y]));
+        let above_and_below = between[0].iter().flat_map(|&x| [[x, -1.0], [x, 1.0]]);
+        let beside = between[1].iter().flat_map(|&y| [[-1.0, y], [1.0, y]]);
+        let within = (0..gaps[1]).flat_map(|j| (0..gaps[0]).map(move |i| [i, j]));
+        let within = within.filter(|[i, j]| (i + j) % 2 == 0);
+        let within = within.map(|[i, j]| [between[0][i], between[1][j]]);
+        let points: Vec<_> = nodes.chain(above_and_below).chain(beside).chain(within).collect();
+        let count = counts[0] * counts[1];
+        let checks = points[count..].iter().map(|point| Terms::at(*point, shape)).collect();
+        let degrees = match shape {
+            Shape::Square => SQUARE_DEGREES,
+            Shape::Low => LOW_DEGREES,
+            Shape::Narrow => LOW_DEGREES.map(|[down, across]| [across, down]),
+        };
         // Along a side: the discrete cosine transform.
-        let half = |k: usize| if k == 0 || k == gaps { 0.5 } else { 1.0 };
-        let share = |degree: usize, k: usize| {
+        let share = |axis: usize, degree: usize, k: usize| {
+            let gaps = gaps[axis];
+            let half = |k: usize| if k == 0 || k == gaps { 0.5 } else { 1.0 };
             let all = 2.0 / gaps as f64 * half(degree) * half(k);
-            if degree < side { all * (degree as f64 * angle(k)).cos() } else { 0.0 }
+            if degree <= gaps { all * (degree as f64 * angle(axis, k)).cos() } else { 0.0 }
         };
-        let of_term = |[across, down]: [usize; 2]| {
-            (0..side * side).map(move |node| share(across, node % side) * share(down, node / side))
+        let of_term = |[i, j]: [usize; 2]| {
+            let columns = counts[0];
+            (0..count).map(move |node| share(0, i, node % columns) * share(1, j, node / columns))
         };
-        let shares = DEGREES.into_iter().flat_map(of_term).collect();
-        Self { side, points, checks, shares }
+        let terms = if shape == Shape::Square { MOST * MOST } else { MOST_NODES };
+        let shares = degrees.into_iter().take(terms).flat_map(of_term).collect();
+        Self { counts, points, checks, degrees, shares }
     }
 
     /// How many nodes there are.
     pub fn nodes(&self) -> usize {
-        self.side * self.side
+        self.counts[0] * self.counts[1]
     }
 
     /// How many neighbours among the nodes, across and down, differ in whether they are among the
-    /// given points: see [`bits`].
+    /// given points, see [`bits`]: as if there were as many nodes across as down.
     pub fn cuts(&self, points: u64) -> [usize; 2] {
-        let is_in = |column: usize, row: usize| points >> (row * self.side + column) & 1;
+        let [columns, rows] = self.counts;
+        let is_in = |column: usize, row: usize| points >> (row * columns + column) & 1;
         let mut cuts = [0; 2];
-        for i in 0..self.side {
-            for k in 1..self.side {
-                cuts[0] += usize::from(is_in(k, i) != is_in(k - 1, i));
-                cuts[1] += usize::from(is_in(i, k) != is_in(i, k - 1));
+        for row in 0..rows {
+            for column in 0..columns {
+                let here = is_in(column, row);
+                cuts[0] += usize::from(column > 0 && here != is_in(column - 1, row));
+                cuts[1] += usize::from(row > 0 && here != is_in(column, row - 1));
             }
         }
-        cuts
+        [0, 1].map(|axis| cuts[axis] * self.counts[axis] / columns.min(rows))
     }
 
     /// The coefficients of the polynomials through the values of [`LANES`] functions at the nodes.
     pub fn coefficients(&self, values: &[[f64; LANES]]) -> Coefficients {
-        let mut coefficients = [[0.0; LANES]; MOST_TERMS];
+        let mut coefficients = [[0.0; LANES]; MOST_NODES];
         for (sums, shares) in coefficients.iter_mut().zip(self.shares.chunks(self.nodes())) {
             add_products(sums, shares, values);
         }
@@ -103,8 +158,8 @@ impl Grid {
     /// degree.
     pub fn rougher(&self, coefficients: &[Coefficients]) -> usize {
         let leading = |axis: usize| -> f64 {
-            let terms = coefficients.iter().flat_map(|lane| lane.iter().zip(DEGREES));
-            let terms = terms.filter(|(_, degrees)| degrees[axis] == self.side - 1);
+            let terms = coefficients.iter().flat_map(|lane| lane.iter().zip(self.degrees));
+            let terms = terms.filter(|(_, degrees)| degrees[axis] == self.counts[axis] - 1);
             terms.flat_map(|(values, _)| values).map(|value| value * value).sum()
         };
         usize::from(leading(1) > leading(0))
@@ -113,18 +168,31 @@ impl Grid {
 
 /// The terms of a polynomial at one place of a patch, whose coordinates go from -1 to 1. None is
 /// ever above 1.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Terms([f64; MOST_TERMS]);
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Terms([f64; MOST_NODES]);
 
 impl Terms {
     #[inline(always)]
-    pub fn at(place: [f64; 2]) -> Self {
+    pub fn at(place: [f64; 2], shape: Shape) -> Self {
+        match shape {
+            Shape::Square => Self::of(place, &SQUARE_DEGREES),
+            Shape::Low => Self::of(place, &LOW_DEGREES),
+            Shape::Narrow => Self::of([place[1], place[0]], &LOW_DEGREES),
+        }
+    }
+
+    #[inline(always)]
+    fn of(place: [f64; 2], degrees: &Degrees) -> Self {
         let [across, down] = place.map(|x| {
             let second = 2.0 * x * x - 1.0;
-            [1.0, x, second, x * (2.0 * second - 1.0), 2.0 * second * second - 1.0]
+            let third = x * (2.0 * second - 1.0);
+            let fourth = 2.0 * second * second - 1.0;
+            let fifth = 2.0 * second * third - x;
+            let sixth = 2.0 * third * third - 1.0;
+            [1.0, x, second, third, fourth, fifth, sixth, 2.0 * third * fourth - x]
         });
         Self(std::array::from_fn(|term| {
-            let [i, j] = DEGREES[term];
+            let [i, j] = degrees[term];
             across[i] * down[j]
         }))
     }
@@ -148,7 +216,7 @@ fn add_products(sums: &mut [f64; LANES], factors: &[f64], values: &[[f64; LANES]
 }
 
 /// Those of [`LANES`] functions, term by term.
-pub(super) type Coefficients = [[f64; LANES]; MOST_TERMS];
+pub(super) type Coefficients = [[f64; LANES]; MOST_NODES];
 
 /// Points, by their numbers, as bits.
 pub(super) fn bits(points: impl Iterator<Item = usize>) -> u64 {
@@ -163,32 +231,47 @@ mod tests {
     use super::*;
 
     fn grids() -> impl Iterator<Item = Grid> {
-        [3, 4, 5].into_iter().map(Grid::new)
+        [3, 4, 5].into_iter().map(Grid::square).chain([Grid::low(), Grid::narrow()])
     }
 
-    /// Polynomials of a degree below the number of nodes are what they are.
+    fn shape(grid: &Grid) -> Shape {
+        match grid.counts {
+            LOW => Shape::Low,
+            [across, down] if across == down => Shape::Square,
+            _ => Shape::Narrow,
+        }
+    }
+
+    /// Polynomials of degrees below the numbers of nodes are what they are.
     #[test]
     fn polynomials_are_met() {
         for grid in grids() {
-            let degree = grid.side as i32 - 1;
-            let value = |[x, y]: [f64; 2]| (1.3 - x).powi(degree) * (y + 0.4).powi(degree);
+            let [across, down] = grid.counts.map(|count| count as i32 - 1);
+            let value = |[x, y]: [f64; 2]| (1.3 - x).powi(across) * (y + 0.4).powi(down);
+            let largest = value([-1.0, 1.0]);
             let at_nodes: Vec<_> =
                 (grid.points[..grid.nodes()].iter()).map(|point| [value(*point); LANES]).collect();
             let coefficients = grid.coefficients(&at_nodes);
             for point in grid.points.iter().copied().chain([[0.3, -0.8], [0.91, 0.17]]) {
-                let sum = Terms::at(point).sum(&coefficients);
-                assert!((sum[3] - value(point)).abs() < 1e-13, "{point:?}: {sum:?}");
+                let sum = Terms::at(point, shape(&grid)).sum(&coefficients);
+                assert!((sum[3] - value(point)).abs() < 1e-14 * largest, "{point:?}: {sum:?}");
             }
             assert!(grid.points.len() <= 64, "they are bits of a number");
+            assert_eq!(grid.points.len(), grid.nodes() + grid.checks.len());
         }
     }
 
     #[test]
     fn the_first_terms_are_those_of_the_lowest_degrees() {
-        let sums = DEGREES.map(|[across, down]| across + down);
-        assert!(sums.is_sorted());
-        let all: std::collections::BTreeSet<_> = DEGREES.into_iter().collect();
-        assert_eq!(all.len(), MOST_TERMS);
+        for (degrees, [across, down]) in [(SQUARE_DEGREES, [MOST; 2]), (LOW_DEGREES, LOW)] {
+            let terms = &degrees[..across * down];
+            let sums: Vec<_> =
+                terms.iter().map(|[i, j]| i * (down - 1) + j * (across - 1)).collect();
+            assert!(sums.is_sorted());
+            let all: std::collections::BTreeSet<_> = terms.iter().collect();
+            assert_eq!(all.len(), terms.len());
+            assert!(terms.iter().all(|[i, j]| *i < across && *j < down));
+        }
     }
 
     #[test]
@@ -198,8 +281,9 @@ mod tests {
                 let points = grid.points.iter().enumerate();
                 bits(points.filter(|(_, point)| point[axis] > 0.3).map(|(i, _)| i))
             };
-            assert_eq!(grid.cuts(beyond(0)), [grid.side, 0]);
-            assert_eq!(grid.cuts(beyond(1)), [0, grid.side]);
+            let most = *grid.counts.iter().max().expect("two");
+            assert_eq!(grid.cuts(beyond(0)), [most, 0]);
+            assert_eq!(grid.cuts(beyond(1)), [0, most]);
             let steep = |axis: usize| {
                 let nodes = grid.points[..grid.nodes()].iter();
                 let values: Vec<_> =

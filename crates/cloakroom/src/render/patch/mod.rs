@@ -20,7 +20,7 @@ use crate::scene::CameraRay;
 use crate::trace::{Branch, FourTracers, LAUNCHED, Leaf, Limits, Outcome, TraceStats, Tracer};
 use arrayvec::ArrayVec;
 use glam::DVec3;
-use grid::{Grid, LANES, MOST, Terms, bits};
+use grid::{Grid, LANES, MOST, Shape, Terms, bits};
 use instructions::Instructions;
 use smooth::{Functions, Rough, Smooth, smooth};
 use std::ops::Range;
@@ -95,6 +95,18 @@ impl Patch {
         [0, 1].map(|i| self.corner[i] as f64 + 0.5 * self.size[i] as f64 * (1.0 + place[i]))
     }
 
+    /// How rays lie in it that are traced, given how many leaves of the larger patch vary too fast across
+    /// and down.
+    fn shape(self, rough: [usize; 2]) -> Shape {
+        let [width, height] = self.size;
+        let long = |axis: usize| if rough[axis] > rough[1 - axis] { LONG_IF_ROUGH } else { LONG };
+        match width.max(height) > SMALL {
+            true if width >= long(1) * height => Shape::Low,
+            true if height >= long(0) * width => Shape::Narrow,
+            _ => Shape::Square,
+        }
+    }
+
     /// The coordinates, -1 to 1, of a point of the picture.
     fn place(self, point: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| (point[i] - self.corner[i] as f64) / (0.5 * self.size[i] as f64) - 1.0)
@@ -114,6 +126,10 @@ pub(super) enum Fit {
 #[derive(Clone, Debug)]
 struct Level<const N: usize> {
     patch: Patch,
+    /// How the rays lie that are traced in it.
+    shape: Shape,
+    /// How many of its leaves are no functions because they vary too fast across and down.
+    rough: [usize; 2],
     /// The surfaces that its rays meet first.
     surfaces: Surfaces,
     /// The leaves that are interpolated, those of larger patches that it is part of, too.
@@ -138,11 +154,15 @@ struct Level<const N: usize> {
 /// fewer, to tell as much.
 const SMALL: usize = 8;
 
+/// Patches that are so many times as wide as high are low: what has made them so, an edge, makes leaves vary
+/// fast down the picture; and the other way round.
+const LONG: usize = 8;
+
+/// The same where leaves of the larger patch have been found to vary too fast.
+const LONG_IF_ROUGH: usize = 2;
+
 /// Rays of a patch at most: they are bits of a number.
 const MOST_RAYS: usize = 64;
-
-/// Divisions of a patch by two, each way, and the patch itself.
-const MOST_LEVELS: usize = 9;
 
 /// Interpolates leaves over patches, one after the other.
 pub(super) struct LeafPatches<'a, const N: usize> {
@@ -153,8 +173,8 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     beside: FourTracers<'a, N, Trail<N>>,
     /// They trace what is not interpolated.
     tracers: FourTracers<'a, N, LeftOut>,
-    /// Those of the smallest patches, of small ones and of others.
-    grids: [Grid; 3],
+    /// Those of the smallest patches, of small ones and of others, and of low and of narrow ones.
+    grids: [Grid; 5],
     /// Those that the processor has; they change no number.
     instructions: Instructions,
     functions: Functions<'a>,
@@ -188,6 +208,11 @@ pub(super) struct LeafPatches<'a, const N: usize> {
 }
 
 impl<const N: usize> Level<N> {
+    /// Which grid is its.
+    fn grid(&self) -> usize {
+        grid_of(self.patch, self.shape)
+    }
+
     /// The place among the surfaces of what is past all devices.
     fn past_all(&self) -> Option<u16> {
         Some(self.surfaces.iter().position(Option::is_none)? as u16)
@@ -222,8 +247,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             return None;
         }
         let side = largest_side(prepared)?;
-        let grids = [MOST - 2, MOST - 1, MOST].map(Grid::new);
-        let nodes = grids[grid_of(Patch { corner: [0; 2], size: [side; 2] })].points.len();
+        let [smallest, small, large] = [MOST - 2, MOST - 1, MOST].map(Grid::square);
+        let grids = [smallest, small, large, Grid::low(), Grid::narrow()];
+        let largest = Patch { corner: [0; 2], size: [side; 2] };
+        let nodes = grids[grid_of(largest, Shape::Square)].points.len();
         if side * side * rays_per_pixel as usize <= (COST * nodes as f64) as usize {
             return None;
         }
@@ -257,9 +284,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         })
     }
 
-    /// Where rays of a patch are traced.
-    fn grid(&self, patch: Patch) -> &Grid {
-        &self.grids[grid_of(patch)]
+    /// How rays lie in a patch of that level that are traced.
+    fn shape(&self, patch: Patch, level: usize) -> Shape {
+        let above = level.checked_sub(1).and_then(|above| self.levels.get(above));
+        patch.shape(above.map_or([0; 2], |above| above.rough))
     }
 
     /// The share of the patch that was fitted last that is to be traced for each sample.
@@ -278,7 +306,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let halves = patch.halves([axis, 1 - axis].into_iter().find(divisible)?);
         let samples = width * height * self.rays_per_pixel as usize;
         let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
-        let rays = 2 * self.grid(halves[0]).points.len();
+        let shape = self.shape(halves[0], self.levels.len());
+        let rays = 2 * self.grids[grid_of(halves[0], shape)].points.len();
         let cost = COST * traced.max(LEAST_COST);
         (gain > cost * rays as f64).then_some(halves)
     }
@@ -293,6 +322,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         self.samples.iter_mut().for_each(|(leaves, _)| leaves.clear());
         let mut here = Level {
             patch,
+            shape: self.shape(patch, level),
+            rough: [0; 2],
             surfaces: Surfaces::new(),
             leaves: Vec::new(),
             launched: true,
@@ -310,7 +341,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     fn look(&mut self, here: &mut Level<N>) -> Fit {
         let camera = &self.prepared.scene.camera;
-        let grid = self.grid(here.patch);
+        let grid = &self.grids[here.grid()];
         let rays: Vec<CameraRay> = (grid.points.iter())
             .map(|place| {
                 let [x, y] = here.patch.point(*place);
@@ -368,7 +399,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let at = 4 * number;
             let ray = |i: usize| i.min(four.len() - 1);
             let launches = std::array::from_fn(|i| self.detection.launch(camera, &four[ray(i)]));
-            let grid = self.grid(here.patch);
+            let grid = &self.grids[here.grid()];
             let points = std::array::from_fn(|i| here.patch.point(grid.points[at + ray(i)]));
             let surfaces = std::array::from_fn(|i| first[at + ray(i)]);
             let least = DEEPER * self.prepared.limits.min_power;
@@ -461,7 +492,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let further_on = &mut self.further_on[i];
                 further_on.clear();
                 self.ways.with_others_beside(&faces, ray, further_on);
-                let point = here.patch.point(self.grids[grid_of(here.patch)].points[ray]);
+                let point = here.patch.point(self.grids[here.grid()].points[ray]);
                 let mut terms = TermsOfLevels::at(point);
                 for (number, smooth) in branches.iter().enumerate() {
                     if !is_followed(number, ray) && faces.beside(smooth.first.path, ray) != 0 {
@@ -575,8 +606,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }));
         self.ways.gather(rays, starts, faces, least);
         self.ways.drop_lost(&mut leaves, &mut branches);
-        self.fit_leaves(here.patch, level, &mut leaves);
-        self.fit_branches(here.patch, level, &mut branches);
+        here.rough = self.fit_leaves(here.grid(), level, &mut leaves);
+        self.fit_branches(here.grid(), level, &mut branches);
         // Rays may part where they were thought to choose.
         self.ways.drop_lost(&mut leaves, &mut branches);
         if is_launched {
@@ -589,9 +620,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         self.keep_what_is_needed(here, &mut leaves, &mut branches);
         self.find_choices_before(here, &starts, &mut leaves, &mut branches);
         for part in self.ways.some_have() {
-            let cuts = self.grid(here.patch).cuts(part);
+            let cuts = self.grids[here.grid()].cuts(part);
             self.cuts = [0, 1].map(|axis| self.cuts[axis] + cuts[axis]);
         }
+        self.cuts = [0, 1].map(|axis| self.cuts[axis] + here.rough[axis]);
         let borders = known_borders.unwrap_or_else(|| self.ways.borders());
         here.borders = Some(borders);
         here.traced = (self.ways.borders_to_trace() / borders).min(1.0);
@@ -679,8 +711,15 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }
     }
 
-    /// Makes functions of the leaves that all rays have; where they are none, rays part.
-    fn fit_leaves(&mut self, patch: Patch, level: usize, smooth_leaves: &mut Vec<Smooth<Leaf<N>>>) {
+    /// Makes functions of the leaves that all rays have; where they are none, rays part. How many are none
+    /// because they vary too fast across and down.
+    fn fit_leaves(
+        &mut self,
+        grid: usize,
+        level: usize,
+        smooth_leaves: &mut Vec<Smooth<Leaf<N>>>,
+    ) -> [usize; 2] {
+        let mut all_rough = [0; 2];
         let mut found: Vec<_> =
             (self.found.iter()).map(|(ray, leaf)| (leaf.path, *ray, leaf)).collect();
         found.sort_unstable_by_key(|(path, ray, _)| (*path, *ray));
@@ -698,24 +737,25 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             // Were there two of a ray, they would be no function.
             let of_rays = way.iter().map(|(_, ray, leaf)| (*ray, *leaf)).take(MOST_RAYS);
             let of_rays: ArrayVec<(usize, &Leaf<N>), MOST_RAYS> = of_rays.collect();
-            let grid = &self.grids[grid_of(patch)];
+            let grid = &self.grids[grid];
             match smooth(&of_rays, grid, self.functions, level, &mut self.coefficients) {
                 Ok(leaf) => smooth_leaves.push(leaf),
                 Err(rough) => {
                     if let Rough::Along(axis) = rough {
-                        self.cuts[axis] += 1;
+                        all_rough[axis] += 1;
                     }
                     self.ways.part_at(path);
                 }
             }
         }
+        all_rough
     }
 
     /// Makes functions of the branches at whose ends rays part; those that are none are followed
     /// from the branch before.
     fn fit_branches(
         &mut self,
-        patch: Patch,
+        grid: usize,
         level: usize,
         smooth_branches: &mut Vec<Smooth<Branch<N>>>,
     ) {
@@ -734,7 +774,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let way = ways.next_if(|way| way[0].0 == path).unwrap_or_default();
                 let of_rays = way.iter().map(|(_, ray, branch)| (*ray, *branch)).take(MOST_RAYS);
                 let of_rays: ArrayVec<(usize, &Branch<N>), MOST_RAYS> = of_rays.collect();
-                let grid = &self.grids[grid_of(patch)];
+                let grid = &self.grids[grid];
                 match smooth(&of_rays, grid, self.functions, level, &mut self.coefficients) {
                     Ok(branch) => {
                         known.push(path);
@@ -765,7 +805,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let least = self.prepared.limits.min_power;
             let instructions = self.instructions;
             let limits = [least, EDGE];
-            if !instructions.with(|| self.go_further_on(level, points, &met, limits)) {
+            if !instructions.with(
+                #[inline(always)]
+                || self.go_further_on(level, points, &met, limits),
+            ) {
                 return false;
             }
             let camera = &self.prepared.scene.camera;
@@ -773,11 +816,13 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
             self.tracers.trace_further_on(&launches, launched, &self.further_on);
         }
-        let mut samples = std::mem::take(&mut self.samples);
         let mut as_traced = true;
-        for (i, (leaves, outcome)) in samples.iter_mut().enumerate() {
-            *outcome = Outcome::default();
-            as_traced &= self.instructions.with(|| self.interpolated(points[i], i, leaves));
+        for (i, point) in points.iter().enumerate() {
+            let mut leaves = std::mem::take(&mut self.samples[i].0);
+            as_traced &= self.instructions.with(
+                #[inline(always)]
+                || self.interpolated(*point, i, &mut leaves),
+            );
             if is_traced {
                 let (others, outcome) = self.tracers.tracers[i].traced();
                 leaves.extend_from_slice(others);
@@ -786,17 +831,15 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let left_out = self.tracers.tracers[i].watcher();
                 as_traced &= self.met[i].iter().all(|place| left_out.has_met(*place));
             }
-        }
-        for (leaves, outcome) in &mut samples {
-            if matches!(&leaves[..], [past_all] if past_all.path == LAUNCHED) {
-                // It has met nothing, to the last bit.
-                continue;
+            let mut outcome = Outcome::default();
+            // Else it has met nothing, to the last bit.
+            if !matches!(&leaves[..], [past_all] if past_all.path == LAUNCHED) {
+                for (i, pruned) in outcome.pruned.iter_mut().enumerate() {
+                    *pruned = (1.0 - leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()).max(0.0);
+                }
             }
-            for (i, pruned) in outcome.pruned.iter_mut().enumerate() {
-                *pruned = (1.0 - leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()).max(0.0);
-            }
+            self.samples[i] = (leaves, outcome);
         }
-        self.samples = samples;
         as_traced
     }
 
@@ -834,29 +877,39 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     }
 }
 
-/// The terms at one point of the picture in a patch and the larger ones that it is part of.
+/// The terms at one point of the picture in a patch or a larger one that it is part of, one after the other.
 struct TermsOfLevels {
     point: [f64; 2],
-    terms: [Option<Terms>; MOST_LEVELS],
+    level: Option<usize>,
+    terms: Terms,
 }
 
 impl TermsOfLevels {
     #[inline(always)]
     fn at(point: [f64; 2]) -> Self {
-        Self { point, terms: [None; MOST_LEVELS] }
+        Self { point, level: None, terms: Terms::default() }
     }
 
     #[inline(always)]
     fn of<const N: usize>(&mut self, levels: &[Level<N>], level: usize) -> &Terms {
-        self.terms[level].get_or_insert_with(|| Terms::at(levels[level].patch.place(self.point)))
+        if self.level != Some(level) {
+            self.level = Some(level);
+            let Level { patch, shape, .. } = &levels[level];
+            self.terms = Terms::at(patch.place(self.point), *shape);
+        }
+        &self.terms
     }
 }
 
 /// Which of the grids is that of a patch.
-fn grid_of(patch: Patch) -> usize {
+fn grid_of(patch: Patch, shape: Shape) -> usize {
     let [width, height] = patch.size;
     let side = width.max(height);
-    usize::from(side > SMALL / 2) + usize::from(side > SMALL)
+    match shape {
+        Shape::Square => usize::from(side > SMALL / 2) + usize::from(side > SMALL),
+        Shape::Low => 3,
+        Shape::Narrow => 4,
+    }
 }
 
 /// How large patches may be, pixels: no larger than the smallest of several devices or parts looks,

@@ -1,6 +1,6 @@
 //! Leaves and branches as functions of the place in a patch.
 
-use super::grid::{Coefficients, Grid, LANES, MOST, Terms};
+use super::grid::{Coefficients, Grid, LANES, MOST_NODES, Terms};
 use super::ways::Choice;
 use crate::render::detection::Detection;
 use crate::render::prepared_scene::PreparedScene;
@@ -25,6 +25,9 @@ const BRANCH: f64 = 0.03;
 
 /// The share of each of them that terms which are left out may have.
 const LEFT_OUT: f64 = 0.2;
+
+/// Where the square of a length differs from 1 by less, its third power does not count.
+const NEARLY: f64 = 1e-6;
 
 /// How far leaves are looked at that end nowhere, and branches, cm.
 const REACH: f64 = 100.0;
@@ -94,8 +97,7 @@ impl<const N: usize> Smooth<Branch<N>> {
     #[inline(always)]
     pub fn point_from(&self, branch: &mut Branch<N>, at: &Terms, coefficients: &[[f64; LANES]]) {
         let numbers = at.sum(&coefficients[self.start..self.start + self.terms]);
-        branch.position = DVec3::from_slice(&numbers[..3]);
-        branch.direction = DVec3::from_slice(&numbers[3..6]).normalize();
+        [branch.position, branch.direction] = place_of(&numbers);
     }
 }
 
@@ -160,6 +162,40 @@ pub(super) trait Interpolated: Copy {
     fn largest_power(&self) -> f64;
 }
 
+/// Position and direction with the powers, from which these and what follows are read again: so that four
+/// numbers that lie side by side hold either.
+fn first_numbers<const N: usize>(
+    [position, direction]: [[f64; 3]; 2],
+    power: [f64; N],
+) -> impl Iterator<Item = f64> {
+    let mut power = power.into_iter();
+    position.into_iter().chain(power.next()).chain(direction).chain(power)
+}
+
+/// Position and direction.
+#[inline(always)]
+fn place_of(numbers: &[f64]) -> [DVec3; 2] {
+    [DVec3::from_slice(&numbers[..3]), unit(DVec3::from_slice(&numbers[4..7]))]
+}
+
+/// The unit vector along one of nearly that length.
+#[inline(always)]
+fn unit(nearly: DVec3) -> DVec3 {
+    let missing = 1.0 - nearly.length_squared();
+    if missing.abs() < NEARLY {
+        // The root's series, to the last bit: nothing has to wait for the root itself.
+        nearly * (1.0 + missing * (0.5 + 0.375 * missing))
+    } else {
+        nearly.normalize()
+    }
+}
+
+/// The powers, and the numbers after them.
+#[inline(always)]
+fn powers_and_rest<const N: usize>(numbers: &[f64]) -> ([f64; N], &[f64]) {
+    (std::array::from_fn(|i| numbers[if i == 0 { 3 } else { 6 + i }]), &numbers[6 + N..])
+}
+
 /// Puts numbers in order.
 fn in_order(numbers: impl IntoIterator<Item = f64>) -> Lanes {
     let mut lanes = [[0.0; LANES]; MOST_LANES];
@@ -205,28 +241,27 @@ impl<const N: usize> Interpolated for Leaf<N> {
     }
 
     fn values(&self, kept: Functions<'_>) -> Lanes {
-        let places = self.position.to_array().into_iter().chain(self.direction.to_array());
+        let place = [self.position, self.direction].map(|vector| vector.to_array());
         let paths = paths_of(self).into_iter();
         let fields = numbers_of(&self.electric).take(if kept.fields { 6 * N } else { 0 });
         let paths = paths.take(kept.paths());
-        in_order(places.chain(self.power).chain(paths).chain(fields))
+        in_order(first_numbers(place, self.power).chain(paths).chain(fields))
     }
 
     fn tolerances(&self, kept: Functions<'_>, power: f64) -> Lanes {
         let [place, power] = [kept.place_tolerance(power), kept.power_tolerance()];
         let reach = self.distance_to(&kept.prepared.screen).unwrap_or(REACH);
-        let places = [place, place, place].into_iter().chain([place / reach; 3]);
+        let first = first_numbers([[place; 3], [place / reach; 3]], [power; N]);
         let paths = [place, place, place.max(kept.pulse_tolerance)].into_iter().take(kept.paths());
-        in_order(places.chain([power; N]).chain(paths).chain(std::iter::repeat(power)))
+        in_order(first.chain(paths).chain(std::iter::repeat(power)))
     }
 
     #[inline(always)]
     fn put(&mut self, kept: Functions<'_>, lanes: &Lanes) {
         let numbers = lanes.as_flattened();
-        self.position = DVec3::from_slice(&numbers[..3]);
-        self.direction = DVec3::from_slice(&numbers[3..6]).normalize();
-        self.power = std::array::from_fn(|i| numbers[6 + i]);
-        let mut rest = &numbers[6 + N..];
+        [self.position, self.direction] = place_of(numbers);
+        let mut rest;
+        (self.power, rest) = powers_and_rest(numbers);
         if kept.paths {
             [self.optical_path, self.delay_path] = [rest[0], rest[1]];
             if kept.group_paths {
@@ -268,31 +303,30 @@ impl<const N: usize> Interpolated for Branch<N> {
     }
 
     fn values(&self, kept: Functions<'_>) -> Lanes {
-        let places = self.position.to_array().into_iter().chain(self.direction.to_array());
+        let place = [self.position, self.direction].map(|vector| vector.to_array());
         let rest =
             self.wave_vector.to_array().into_iter().chain([self.optical_path, self.backwards]);
         let dispersion = kept.group_paths.then_some(self.dispersion);
         let rest = rest.chain(dispersion);
-        in_order(places.chain(self.power).chain(rest).chain(numbers_of(&self.electric)))
+        in_order(first_numbers(place, self.power).chain(rest).chain(numbers_of(&self.electric)))
     }
 
     fn tolerances(&self, kept: Functions<'_>, power: f64) -> Lanes {
         let [place, power] = [kept.place_tolerance(power), kept.power_tolerance()];
         let direction = BRANCH * place / REACH;
-        let places = [place, place, place, direction, direction, direction];
+        let first = first_numbers([[place; 3], [direction; 3]], [power; N]);
         let rest = [direction, direction, direction, place, place].into_iter();
         let pulse = place.max(kept.pulse_tolerance);
         let rest = rest.chain(kept.group_paths.then_some(pulse));
-        in_order(places.into_iter().chain([power; N]).chain(rest).chain(std::iter::repeat(power)))
+        in_order(first.chain(rest).chain(std::iter::repeat(power)))
     }
 
     #[inline(always)]
     fn put(&mut self, kept: Functions<'_>, lanes: &Lanes) {
         let numbers = lanes.as_flattened();
-        self.position = DVec3::from_slice(&numbers[..3]);
-        self.direction = DVec3::from_slice(&numbers[3..6]).normalize();
-        self.power = std::array::from_fn(|i| numbers[6 + i]);
-        let rest = &numbers[6 + N..];
+        [self.position, self.direction] = place_of(numbers);
+        let rest;
+        (self.power, rest) = powers_and_rest(numbers);
         self.wave_vector = DVec3::from_slice(&rest[..3]);
         [self.optical_path, self.backwards] = [rest[3], rest[4]];
         let mut rest = &rest[5..];
@@ -351,11 +385,11 @@ pub(super) fn smooth<T: Interpolated>(
     if !at_nodes.iter().enumerate().all(is_there) {
         return Err(Rough::Parted);
     }
-    let values: ArrayVec<Lanes, { MOST * MOST }> =
+    let values: ArrayVec<Lanes, MOST_NODES> =
         at_nodes.iter().map(|(_, one)| one.values(kept)).collect();
     let lanes: ArrayVec<Coefficients, MOST_LANES> = (0..T::lanes(kept))
         .map(|lane| {
-            let values: ArrayVec<[f64; LANES], { MOST * MOST }> =
+            let values: ArrayVec<[f64; LANES], MOST_NODES> =
                 values.iter().map(|lanes| lanes[lane]).collect();
             grid.coefficients(&values)
         })
