@@ -99,10 +99,10 @@ impl Patch {
     /// and down.
     fn shape(self, rough: [usize; 2]) -> Shape {
         let [width, height] = self.size;
-        let long = |axis: usize| if rough[axis] > rough[1 - axis] { LONG_IF_ROUGH } else { LONG };
-        match width.max(height) > SMALL {
-            true if width >= long(1) * height => Shape::Low,
-            true if height >= long(0) * width => Shape::Narrow,
+        let is_rough = |axis: usize| rough[axis] > rough[1 - axis];
+        match width.max(height) > SMALL / 2 {
+            true if width >= LONG * height || is_rough(1) && width >= height => Shape::Low,
+            true if height >= LONG * width || is_rough(0) && height >= width => Shape::Narrow,
             _ => Shape::Square,
         }
     }
@@ -154,12 +154,9 @@ struct Level<const N: usize> {
 /// fewer, to tell as much.
 const SMALL: usize = 8;
 
-/// Patches that are so many times as wide as high are low: what has made them so, an edge, makes leaves vary
-/// fast down the picture; and the other way round.
+/// Patches that are so many times as wide as high are taken as low: what has made them so, an edge, makes
+/// leaves vary fast down the picture; and the other way round.
 const LONG: usize = 8;
-
-/// The same where leaves of the larger patch have been found to vary too fast.
-const LONG_IF_ROUGH: usize = 2;
 
 /// Rays of a patch at most: they are bits of a number.
 const MOST_RAYS: usize = 64;
