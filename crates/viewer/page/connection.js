@@ -41,6 +41,18 @@ export class Connection {
     return this.line.readyState === WebSocket.OPEN;
   }
 
+  // Whether a picture of what moves would be asked for now.
+  get hasRoom() {
+    this.#giveUp();
+    return this.waiting.length < AHEAD;
+  }
+
+  // Those that do not come.
+  #giveUp() {
+    const now = performance.now();
+    this.waiting = this.waiting.filter(({ since }) => now - since < PATIENCE);
+  }
+
   #receive(buffer) {
     const length = new DataView(buffer).getUint32(0, true);
     const caption = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
@@ -60,15 +72,14 @@ export class Connection {
   // Asks for a picture of what `look` says; `moving` if another will follow at once. Returns its number, if it was asked for now.
   look(look, moving) {
     if (!this.isOpen) return undefined;
-    const now = performance.now();
-    this.waiting = moving ? this.waiting.filter(({ since }) => now - since < PATIENCE) : [];
+    if (!moving) this.waiting = [];
     this.next = null;
-    if (this.waiting.length >= AHEAD) {
+    if (!this.hasRoom) {
       this.next = look;
       return undefined;
     }
     const id = ++this.id;
-    if (moving) this.waiting.push({ id, since: now });
+    if (moving) this.waiting.push({ id, since: performance.now() });
     this.#say({ look: { id, moving, ...look() } });
     return id;
   }

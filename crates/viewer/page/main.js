@@ -318,11 +318,13 @@ function play() {
   let before = performance.now();
   const turn = (now) => {
     if (!playing) return;
-    const seconds = Math.min(0.2, (now - before) / 1000);
+    requestAnimationFrame(turn);
+    // No more often than there are pictures: all that says how it stands takes time from them.
+    if (!connection.hasRoom) return;
+    const seconds = Math.min(0.5, (now - before) / 1000);
     before = now;
     rotate((state.device?.rotation ?? 0) + SPEED * seconds, true);
     clearTimeout(settle);
-    requestAnimationFrame(turn);
   };
   requestAnimationFrame(turn);
 }

@@ -335,19 +335,19 @@ impl<'a, const N: usize> Exposer<'a, N> {
     }
 
     /// Takes the samples of the pixels of a block, in a patch of which so much is traced by each
-    /// tracer: what they see together, and how many there were.
+    /// tracer, and adds what they see to it: how many there were.
     fn expose_samples(
         &mut self,
         tracers: &mut [BlockTracer<'_, N>],
         [left, top]: [usize; 2],
         traced: &[f64],
         stop: &AtomicBool,
-    ) -> Result<(Block, f64, TraceStats), Stopped> {
+        block: &mut Block,
+    ) -> Result<(f64, TraceStats), Stopped> {
         let camera = &self.prepared.scene.camera;
         let samples = camera.samples;
         let look = if camera.adaptive > 0.0 { first_look(samples) } else { 0 };
         let mut stats = TraceStats::default();
-        let mut block = Block::default();
         self.spectra = self.detection.spectrum.then(Default::default);
         let mut contrast = Contrast::new();
         let mut taken = 0;
@@ -356,7 +356,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 return Err(Stopped);
             }
             let before = (taken < look).then_some(block.pixels);
-            stats += self.expose_block(tracers, [left, top], taken, traced, &mut block);
+            stats += self.expose_block(tracers, [left, top], taken, traced, block);
             taken += 1;
             if let Some(before) = before {
                 contrast.add(&before, &block.pixels);
@@ -365,7 +365,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 break;
             }
         }
-        Ok((block, f64::from(taken), stats))
+        Ok((f64::from(taken), stats))
     }
 
     /// Exposes the pixels of a block.
@@ -377,7 +377,9 @@ impl<'a, const N: usize> Exposer<'a, N> {
         band: &mut Band<'_>,
         stop: &AtomicBool,
     ) -> Result<(TraceStats, f64), Stopped> {
-        let (block, samples, stats) = self.expose_samples(tracers, [left, top], traced, stop)?;
+        let mut block = Block::default();
+        let (samples, stats) =
+            self.expose_samples(tracers, [left, top], traced, stop, &mut block)?;
         let mut most = 0.0;
         let Band { width, rows, corner: [first_column, first_row], .. } = *band;
         for (i, pixel) in block.pixels.iter().enumerate() {

@@ -21,7 +21,7 @@ impl<'a, const N: usize, W: PathRecorder<N> + Clone> FourTracers<'a, N, W> {
 
     /// Follows four rays to the end of every branch. See [`Tracer::trace`].
     pub fn trace(&mut self, launches: &[Launch<N>; 4]) {
-        let mut branches = launches.each_ref().map(Branch::launched);
+        let mut branches = std::array::from_fn(|i| Branch::launched(&launches[i]));
         let regions = std::array::from_fn(|i| self.tracers[i].begin(&mut branches[i]));
         self.follow(&mut branches, regions);
     }
@@ -34,7 +34,7 @@ impl<'a, const N: usize, W: PathRecorder<N> + Clone> FourTracers<'a, N, W> {
         launched: [bool; 4],
         further_on: &[Vec<Branch<N>>; 4],
     ) {
-        let mut branches = launches.each_ref().map(Branch::launched);
+        let mut branches = std::array::from_fn(|i| Branch::launched(&launches[i]));
         let regions = std::array::from_fn(|i| {
             self.tracers[i].begin_further_on(&mut branches[i], launched[i], &further_on[i])
         });

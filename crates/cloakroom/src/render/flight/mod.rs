@@ -17,7 +17,7 @@ use super::detection::Detection;
 use super::exposure::{group_delay, time_of_flight};
 use super::patch::SIDE;
 use super::pixel::sort_by_arrival;
-use super::{Exposer, PreparedScene, RenderError, Supervision, Tile};
+use super::{Block, Exposer, PreparedScene, RenderError, Supervision, Tile};
 use crate::assembly::Screen;
 use crate::split_mix::mix;
 use crate::trace::{Leaf, Stopped, TraceStats, Tracer};
@@ -381,7 +381,9 @@ impl<const N: usize> Exposer<'_, N> {
             [width, height],
             stop,
             |tracers, at, traced| {
-                let (block, samples, of_block) = self.expose_samples(tracers, at, traced, stop)?;
+                let mut block = Block::default();
+                let (samples, of_block) =
+                    self.expose_samples(tracers, at, traced, stop, &mut block)?;
                 stats += of_block;
                 let Some((settings, pixels)) = &mut self.flight else { return Ok(()) };
                 for (i, pixel) in pixels.iter_mut().enumerate() {

@@ -24,7 +24,7 @@ use grid::{Grid, LANES, MOST, Shape, Terms, bits};
 use instructions::Instructions;
 use smooth::{Functions, Rough, Smooth, smooth};
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use ways::{Choice, Faces, LeftOut, Origin, Start, Surfaces, Trail, Ways};
 
 /// Width and height of the largest patches, pixels.
@@ -171,7 +171,7 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     /// They trace what is not interpolated.
     tracers: FourTracers<'a, N, LeftOut>,
     /// Those of the smallest patches, of small ones and of others, and of low and of narrow ones.
-    grids: [Grid; 5],
+    grids: &'static [Grid; 5],
     /// Those that the processor has; they change no number.
     instructions: Instructions,
     functions: Functions<'a>,
@@ -244,8 +244,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             return None;
         }
         let side = largest_side(prepared)?;
-        let [smallest, small, large] = [MOST - 2, MOST - 1, MOST].map(Grid::square);
-        let grids = [smallest, small, large, Grid::low(), Grid::narrow()];
+        let grids = &*GRIDS;
         let largest = Patch { corner: [0; 2], size: [side; 2] };
         let nodes = grids[grid_of(largest, Shape::Square)].points.len();
         if side * side * rays_per_pixel as usize <= (COST * nodes as f64) as usize {
@@ -897,6 +896,12 @@ impl TermsOfLevels {
         &self.terms
     }
 }
+
+/// Where rays are traced: see [`grid_of`].
+static GRIDS: LazyLock<[Grid; 5]> = LazyLock::new(|| {
+    let [smallest, small, large] = [MOST - 2, MOST - 1, MOST].map(Grid::square);
+    [smallest, small, large, Grid::low(), Grid::narrow()]
+});
 
 /// Which of the grids is that of a patch.
 fn grid_of(patch: Patch, shape: Shape) -> usize {
