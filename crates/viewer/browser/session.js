@@ -8,7 +8,11 @@ import { join } from "node:path";
 import { chromium } from "playwright-core";
 
 export const program = process.env.CLOAKROOM ?? "../../../target/release/cloakroom";
-const browserPath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+export const browserPath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+export const browserArguments = [
+  "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+  "--disable-component-update", "--disable-sync",
+];
 
 // A server with a scene of its own; `end` ends it as Ctrl-C does, and gives its exit status.
 export async function startServer(...parameters) {
@@ -36,10 +40,7 @@ export async function startBrowser() {
     headless: true,
     acceptDownloads: true,
     viewport: { width: 1280, height: 900 },
-    args: [
-      "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-      "--disable-component-update", "--disable-sync",
-    ],
+    args: browserArguments,
   });
   const end = async () => {
     await context.close();

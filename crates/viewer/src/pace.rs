@@ -4,9 +4,8 @@
 use crate::protocol::Look;
 use std::time::Duration;
 
-/// How long a coarse picture should take: with what the browser does on the same processors, twenty
-/// a second.
-const BRISK: Duration = Duration::from_millis(25);
+/// How long a coarse picture should take: twenty a second, for the browser shows one while the next is made.
+const BRISK: Duration = Duration::from_millis(48);
 
 /// How long it may take where it would be very coarse otherwise.
 const SLOW: Duration = Duration::from_millis(72);
@@ -147,7 +146,8 @@ mod tests {
             passes[0].size
         };
         assert_eq!(size(80.0), [640, 480]);
-        assert_eq!(size(300.0), [320, 240]);
+        assert_eq!(size(150.0), [640, 480]);
+        assert_eq!(size(300.0), [400, 300]);
         // 72 ms rather than fewer pixels, and no fewer than these.
         assert_eq!(size(1000.0), [256, 192]);
         assert_eq!(size(2000.0), [200, 150]);
@@ -162,10 +162,10 @@ mod tests {
             pace.add(pass, Duration::from_millis(milliseconds));
             pass.size[0]
         };
-        // 160 x 120 pixels in 10 ms: 256 x 192 would take 26, and stay while their time does not
+        // 160 x 120 pixels in 10 ms: 320 x 240 would take 40, and stay while their time does not
         // change much.
-        let sizes = [10, 30, 33, 40, 37, 30, 400].map(&mut step);
-        assert_eq!(sizes, [160, 256, 256, 256, 256, 256, 256]);
-        assert!(step(60) < 256);
+        let sizes = [10, 40, 45, 52, 48, 38, 500].map(&mut step);
+        assert_eq!(sizes, [160, 320, 320, 320, 320, 320, 320]);
+        assert!(step(60) < 320);
     }
 }
