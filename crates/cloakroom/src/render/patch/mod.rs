@@ -280,8 +280,12 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         })
     }
 
-    /// How rays lie in a patch of that level that are traced.
+    /// How rays lie in a patch of that level that are traced. Beside the edge of a graded medium leaves vary like a
+    /// root; elsewhere square grids need fewer rays.
     fn shape(&self, patch: Patch, level: usize) -> Shape {
+        if !self.graded {
+            return Shape::Square;
+        }
         let above = level.checked_sub(1).and_then(|above| self.levels.get(above));
         patch.shape(above.map_or([0; 2], |above| above.rough))
     }
