@@ -15,7 +15,7 @@ impl Instructions {
         )
     }
 
-    /// Does `work` with them; all that it calls must be inlined into it.
+    /// Does `work` with them; it must be `#[inline(always)]`, and all that it calls.
     #[inline(always)]
     pub fn with<R>(self, work: impl FnOnce() -> R) -> R {
         #[cfg(not(target_arch = "wasm32"))]

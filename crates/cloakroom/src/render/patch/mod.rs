@@ -832,7 +832,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 as_traced &= self.met[i].iter().all(|place| left_out.has_met(*place));
             }
             let mut outcome = Outcome::default();
-            // Else it has met nothing, to the last bit.
+            // What has met nothing keeps its power to the last bit.
             if !matches!(&leaves[..], [past_all] if past_all.path == LAUNCHED) {
                 for (i, pruned) in outcome.pruned.iter_mut().enumerate() {
                     *pruned = (1.0 - leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()).max(0.0);

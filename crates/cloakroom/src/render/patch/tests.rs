@@ -169,3 +169,19 @@ fn interpolated_paths_of_pulses_are_those_of_traced_rays() {
     }
     assert!(rays > 1000, "{rays} rays are hardly a trial");
 }
+
+#[test]
+fn long_and_rough_patches_have_more_nodes_along_their_short_side() {
+    let shape = |size, rough| Patch { corner: [0; 2], size }.shape(rough);
+    for size in [[32, 32], [32, 8], [8, 16], [4, 2], [2, 2]] {
+        assert_eq!(shape(size, [0; 2]), Shape::Square);
+        assert_eq!(shape(size, [3; 2]), Shape::Square);
+    }
+    assert_eq!([[32, 4], [16, 2]].map(|size| shape(size, [0; 2])), [Shape::Low; 2]);
+    assert_eq!([[4, 32], [2, 16]].map(|size| shape(size, [0; 2])), [Shape::Narrow; 2]);
+    assert_eq!([[32, 32], [32, 16], [8, 4]].map(|size| shape(size, [0, 1])), [Shape::Low; 3]);
+    assert_eq!([[32, 32], [16, 32], [4, 8]].map(|size| shape(size, [2, 1])), [Shape::Narrow; 3]);
+    // What varies along the long side is divided that way.
+    assert_eq!(shape([16, 32], [0, 1]), Shape::Square);
+    assert_eq!(shape([4, 4], [0, 1]), Shape::Square);
+}
