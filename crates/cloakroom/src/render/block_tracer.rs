@@ -6,7 +6,7 @@ use super::exposure::Traced;
 use super::patch::{self, Fit, LeafPatches, Patch};
 use super::prepared_scene::PreparedScene;
 use crate::scene::CameraRay;
-use crate::trace::{FourTracers, Stopped, TraceStats, Tracer};
+use crate::trace::{FourTracers, LAUNCHED, Leaf, Stopped, TraceStats, Tracer};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -27,7 +27,7 @@ pub(crate) struct BlockTracer<'a, const N: usize> {
     patches: Option<LeafPatches<'a, N>>,
     /// Whether the leaves of the last block are interpolated.
     interpolated: bool,
-    /// How many rays of samples have been followed to their ends.
+    /// How many rays of samples have been followed to their ends, and met something there.
     pub(super) walks: f64,
 }
 
@@ -183,9 +183,11 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
     /// Traces the rays of a block.
     pub fn trace(&mut self, rays: &[CameraRay; 4]) {
         self.interpolated = false;
-        self.walks += 4.0;
         let camera = &self.prepared.scene.camera;
         self.tracers.trace(&rays.each_ref().map(|ray| self.detection.launch(camera, ray)));
+        let went_past = |leaves: &[Leaf<N>]| matches!(leaves, [leaf] if leaf.path == LAUNCHED);
+        let followed = self.tracers.tracers.iter().filter(|tracer| !went_past(tracer.traced().0));
+        self.walks += followed.count() as f64;
     }
 
     /// What has become of the rays of the last block.

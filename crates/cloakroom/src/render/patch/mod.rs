@@ -57,7 +57,7 @@ const CLOSER: f64 = 0.2;
 const COST: f64 = 4.0;
 
 /// What it costs at least, as a share of that, for light has to come to where rays part.
-const LEAST_COST: f64 = 0.1;
+const LEAST_COST: f64 = 0.03;
 
 /// What a division leaves to be traced of what was.
 const LEFT_AFTER_DIVISION: f64 = 0.5;
@@ -179,6 +179,8 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     in_air: bool,
     /// Whether rays go through graded media.
     graded: bool,
+    /// Whether all media are homogeneous and between planes.
+    faceted: bool,
     rays_per_pixel: u32,
     /// Width and height of the largest patches, pixels.
     pub side: usize,
@@ -250,6 +252,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         if side * side * rays_per_pixel as usize <= (COST * nodes as f64) as usize {
             return None;
         }
+        let devices = prepared.assembly.devices();
+        let mut regions = devices.iter().flat_map(|device| &device.structure.regions);
         let Limits { min_power, tolerance } = prepared.limits;
         let limits = Limits { min_power: DEEPER * min_power, tolerance: CLOSER * tolerance };
         let beside = Limits { min_power: DEEPEST * min_power, ..limits };
@@ -264,6 +268,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             functions: Functions::of(prepared, detection),
             in_air: matches!(prepared.assembly.region_around(camera.position, DVec3::X), Ok(None)),
             graded,
+            faceted: regions.all(|region| !region.faces().is_empty()),
             rays_per_pixel,
             side,
             levels: Vec::new(),
@@ -280,10 +285,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         })
     }
 
-    /// How rays lie in a patch of that level that are traced. Beside the edge of a graded medium leaves vary like a
-    /// root; elsewhere square grids need fewer rays.
+    /// How rays lie in a patch of that level that are traced. Beside the edge of what is graded or curved leaves
+    /// vary like a root; elsewhere square grids need fewer rays.
     fn shape(&self, patch: Patch, level: usize) -> Shape {
-        if !self.graded {
+        if self.faceted {
             return Shape::Square;
         }
         let above = level.checked_sub(1).and_then(|above| self.levels.get(above));
