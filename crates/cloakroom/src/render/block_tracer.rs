@@ -6,7 +6,7 @@ use super::exposure::Traced;
 use super::patch::{self, Fit, LeafPatches, Patch};
 use super::prepared_scene::PreparedScene;
 use crate::scene::CameraRay;
-use crate::trace::{FourTracers, LAUNCHED, Leaf, Stopped, TraceStats, Tracer};
+use crate::trace::{FourTracers, Stopped, TraceStats, Tracer};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -185,9 +185,8 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
         self.interpolated = false;
         let camera = &self.prepared.scene.camera;
         self.tracers.trace(&rays.each_ref().map(|ray| self.detection.launch(camera, ray)));
-        let went_past = |leaves: &[Leaf<N>]| matches!(leaves, [leaf] if leaf.path == LAUNCHED);
-        let followed = self.tracers.tracers.iter().filter(|tracer| !went_past(tracer.traced().0));
-        self.walks += followed.count() as f64;
+        let traced = self.tracers.tracers.iter().map(|tracer| tracer.traced().0);
+        self.walks += traced.filter(|leaves| !patch::goes_past_all(leaves)).count() as f64;
     }
 
     /// What has become of the rays of the last block.

@@ -838,7 +838,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             }
             let mut outcome = Outcome::default();
             // What has met nothing keeps its power to the last bit.
-            if !matches!(&leaves[..], [past_all] if past_all.path == LAUNCHED) {
+            if !goes_past_all(&leaves) {
                 for (i, pruned) in outcome.pruned.iter_mut().enumerate() {
                     *pruned = (1.0 - leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()).max(0.0);
                 }
@@ -904,6 +904,11 @@ impl TermsOfLevels {
         }
         &self.terms
     }
+}
+
+/// Whether a ray with these leaves has met nothing.
+pub(super) fn goes_past_all<const N: usize>(leaves: &[Leaf<N>]) -> bool {
+    matches!(leaves, [leaf] if leaf.path == LAUNCHED)
 }
 
 /// Where rays are traced: see [`grid_of`].
