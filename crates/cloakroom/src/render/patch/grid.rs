@@ -1,17 +1,21 @@
 //! Where in a patch rays are traced, and polynomials through what they find there.
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// How nodes lie in a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
-    /// As many across as down.
-    Square,
+    /// So many across and as many down, [`FEWEST`] to [`MOST`].
+    Square(usize),
     /// More down than across: for patches that have become low because leaves vary fast down the picture.
     Low,
     /// The other way round.
     Narrow,
 }
+
+/// Nodes along a side of a square grid at least.
+pub(super) const FEWEST: usize = MOST - 2;
 
 /// Nodes along a side of a square grid at most.
 pub(super) const MOST: usize = 5;
@@ -51,6 +55,27 @@ const fn degrees(counts: [usize; 2]) -> Degrees {
     degrees
 }
 
+/// Functions vary far faster along one axis than along the other if their terms of the highest degree are so
+/// much larger.
+const FAR: f64 = 64.0;
+
+/// The square grids, from the one with the fewest nodes on, that of low patches and that of narrow ones.
+static GRIDS: LazyLock<[Grid; 5]> = LazyLock::new(|| {
+    let [fewest, more, most] = [FEWEST, FEWEST + 1, MOST].map(Shape::Square);
+    [fewest, more, most, Shape::Low, Shape::Narrow].map(Grid::new)
+});
+
+impl Shape {
+    /// Where rays are traced in a patch of that shape.
+    pub fn grid(self) -> &'static Grid {
+        &GRIDS[match self {
+            Self::Square(side) => side - FEWEST,
+            Self::Low => 3,
+            Self::Narrow => 4,
+        }]
+    }
+}
+
 /// Where rays are traced in a patch.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
@@ -68,24 +93,14 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Of so many nodes along a side.
-    pub fn square(side: usize) -> Self {
-        Self::new(Shape::Square, [side; 2])
-    }
-
-    /// For low patches.
-    pub fn low() -> Self {
-        Self::new(Shape::Low, LOW)
-    }
-
-    /// For narrow ones.
-    pub fn narrow() -> Self {
-        Self::new(Shape::Narrow, [LOW[1], LOW[0]])
-    }
-
-    /// So many Chebyshev-Lobatto points across and down: the corners are among them, so that a straight
-    /// cut through the patch parts them.
-    fn new(shape: Shape, counts: [usize; 2]) -> Self {
+    /// Chebyshev-Lobatto points across and down: the corners are among them, so that a straight cut through
+    /// the patch parts them.
+    fn new(shape: Shape) -> Self {
+        let counts = match shape {
+            Shape::Square(side) => [side; 2],
+            Shape::Low => LOW,
+            Shape::Narrow => [LOW[1], LOW[0]],
+        };
         let gaps = counts.map(|count| count - 1);
         let angle = |axis: usize, k: usize| PI * (gaps[axis] - k) as f64 / gaps[axis] as f64;
         let [across, down] =
@@ -104,7 +119,7 @@ impl Grid {
         let count = counts[0] * counts[1];
         let checks = points[count..].iter().map(|point| Terms::at(*point, shape)).collect();
         let degrees = match shape {
-            Shape::Square => SQUARE_DEGREES,
+            Shape::Square(_) => SQUARE_DEGREES,
             Shape::Low => LOW_DEGREES,
             Shape::Narrow => LOW_DEGREES.map(|[down, across]| [across, down]),
         };
@@ -119,7 +134,7 @@ impl Grid {
             let columns = counts[0];
             (0..count).map(move |node| share(0, i, node % columns) * share(1, j, node / columns))
         };
-        let terms = if shape == Shape::Square { MOST * MOST } else { MOST_NODES };
+        let terms = if matches!(shape, Shape::Square(_)) { MOST * MOST } else { MOST_NODES };
         let shares = degrees.into_iter().take(terms).flat_map(of_term).collect();
         Self { counts, points, checks, degrees, shares }
     }
@@ -154,15 +169,17 @@ impl Grid {
         coefficients
     }
 
-    /// Along which axis functions of these coefficients are the less smooth: by those of the highest
-    /// degree.
-    pub fn rougher(&self, coefficients: &[Coefficients]) -> usize {
+    /// Along which axis functions of these coefficients vary the faster, by those of the highest degree, and
+    /// whether they do so by far.
+    pub fn rougher(&self, coefficients: &[Coefficients]) -> (usize, bool) {
         let leading = |axis: usize| -> f64 {
             let terms = coefficients.iter().flat_map(|lane| lane.iter().zip(self.degrees));
             let terms = terms.filter(|(_, degrees)| degrees[axis] == self.counts[axis] - 1);
             terms.flat_map(|(values, _)| values).map(|value| value * value).sum()
         };
-        usize::from(leading(1) > leading(0))
+        let leading = [0, 1].map(leading);
+        let axis = usize::from(leading[1] > leading[0]);
+        (axis, leading[axis] > FAR * FAR * leading[1 - axis])
     }
 }
 
@@ -175,7 +192,7 @@ impl Terms {
     #[inline(always)]
     pub fn at(place: [f64; 2], shape: Shape) -> Self {
         match shape {
-            Shape::Square => Self::of(place, &SQUARE_DEGREES),
+            Shape::Square(_) => Self::of(place, &SQUARE_DEGREES),
             Shape::Low => Self::of(place, &LOW_DEGREES),
             Shape::Narrow => Self::of([place[1], place[0]], &LOW_DEGREES),
         }
@@ -230,14 +247,14 @@ pub(super) const LANES: usize = 8;
 mod tests {
     use super::*;
 
-    fn grids() -> impl Iterator<Item = Grid> {
-        [3, 4, 5].into_iter().map(Grid::square).chain([Grid::low(), Grid::narrow()])
+    fn grids() -> impl Iterator<Item = &'static Grid> {
+        GRIDS.iter()
     }
 
     fn shape(grid: &Grid) -> Shape {
         match grid.counts {
             LOW => Shape::Low,
-            [across, down] if across == down => Shape::Square,
+            [across, down] if across == down => Shape::Square(across),
             _ => Shape::Narrow,
         }
     }
@@ -246,6 +263,7 @@ mod tests {
     #[test]
     fn polynomials_are_met() {
         for grid in grids() {
+            assert!(std::ptr::eq(shape(grid).grid(), grid));
             let [across, down] = grid.counts.map(|count| count as i32 - 1);
             let value = |[x, y]: [f64; 2]| (1.3 - x).powi(across) * (y + 0.4).powi(down);
             let largest = value([-1.0, 1.0]);
@@ -290,7 +308,12 @@ mod tests {
                     nodes.map(|point| [(1.0 + 5.0 * point[axis]).sin(); LANES]).collect();
                 grid.coefficients(&values)
             };
-            assert_eq!([0, 1].map(|axis| grid.rougher(&[steep(axis)])), [0, 1]);
+            let rougher = [0, 1].map(|axis| grid.rougher(&[steep(axis)]));
+            assert_eq!(rougher, [(0, true), (1, true)]);
+            let lanes = [steep(0), steep(1).map(|values| values.map(|value| 0.9 * value))];
+            if matches!(shape(grid), Shape::Square(_)) {
+                assert_eq!(grid.rougher(&lanes), (0, false));
+            }
         }
     }
 }

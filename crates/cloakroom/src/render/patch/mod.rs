@@ -20,11 +20,11 @@ use crate::scene::CameraRay;
 use crate::trace::{Branch, FourTracers, LAUNCHED, Leaf, Limits, Outcome, TraceStats, Tracer};
 use arrayvec::ArrayVec;
 use glam::DVec3;
-use grid::{Grid, LANES, MOST, Shape, Terms, bits};
+use grid::{FEWEST, Grid, LANES, MOST, Shape, Terms, bits};
 use instructions::Instructions;
 use smooth::{Functions, Rough, Smooth, smooth};
 use std::ops::Range;
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 use ways::{Choice, Faces, LeftOut, Origin, Start, Surfaces, Trail, Ways};
 
 /// Width and height of the largest patches, pixels.
@@ -95,16 +95,22 @@ impl Patch {
         [0, 1].map(|i| self.corner[i] as f64 + 0.5 * self.size[i] as f64 * (1.0 + place[i]))
     }
 
-    /// How rays lie in it that are traced, given how many leaves of the larger patch vary too fast across
-    /// and down.
-    fn shape(self, rough: [usize; 2]) -> Shape {
+    /// How rays lie in it that are traced, given which leaves of the larger patch are too steep.
+    fn shape(self, steep: Steep) -> Shape {
         let [width, height] = self.size;
-        let is_rough = |axis: usize| rough[axis] > rough[1 - axis];
+        let is_steep = |axis: usize| steep.by_far[axis] > steep.by_far[1 - axis];
         match width.max(height) > SMALL / 2 {
-            true if width >= LONG * height || is_rough(1) && width >= height => Shape::Low,
-            true if height >= LONG * width || is_rough(0) && height >= width => Shape::Narrow,
-            _ => Shape::Square,
+            true if width >= LONG * height || is_steep(1) && width >= height => Shape::Low,
+            true if height >= LONG * width || is_steep(0) && height >= width => Shape::Narrow,
+            _ => self.square(steep),
         }
+    }
+
+    /// The same with as many across as down: few where little is to be told.
+    fn square(self, steep: Steep) -> Shape {
+        let side = self.size[0].max(self.size[1]);
+        let more = usize::from(side > SMALL / 2) + usize::from(side > SMALL);
+        Shape::Square(if steep.along == [0; 2] { FEWEST + more } else { MOST })
     }
 
     /// The coordinates, -1 to 1, of a point of the picture.
@@ -122,14 +128,23 @@ pub(super) enum Fit {
     Alone,
 }
 
+/// How many leaves of a patch vary too fast to be functions.
+#[derive(Clone, Copy, Debug, Default)]
+struct Steep {
+    /// Those that vary faster across, and those that do so down.
+    along: [usize; 2],
+    /// Those of them that vary far faster that way.
+    by_far: [usize; 2],
+}
+
 /// What is known of a patch.
 #[derive(Clone, Debug)]
 struct Level<const N: usize> {
     patch: Patch,
     /// How the rays lie that are traced in it.
     shape: Shape,
-    /// How many of its leaves are no functions because they vary too fast across and down.
-    rough: [usize; 2],
+    /// Which of its leaves are no functions because they are too steep.
+    steep: Steep,
     /// The surfaces that its rays meet first.
     surfaces: Surfaces,
     /// The leaves that are interpolated, those of larger patches that it is part of, too.
@@ -170,8 +185,6 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     beside: FourTracers<'a, N, Trail<N>>,
     /// They trace what is not interpolated.
     tracers: FourTracers<'a, N, LeftOut>,
-    /// Those of the smallest patches, of small ones and of others, and of low and of narrow ones.
-    grids: &'static [Grid; 5],
     /// Those that the processor has; they change no number.
     instructions: Instructions,
     functions: Functions<'a>,
@@ -207,9 +220,9 @@ pub(super) struct LeafPatches<'a, const N: usize> {
 }
 
 impl<const N: usize> Level<N> {
-    /// Which grid is its.
-    fn grid(&self) -> usize {
-        grid_of(self.patch, self.shape)
+    /// Where rays are traced in it.
+    fn grid(&self) -> &'static Grid {
+        self.shape.grid()
     }
 
     /// The place among the surfaces of what is past all devices.
@@ -246,9 +259,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             return None;
         }
         let side = largest_side(prepared)?;
-        let grids = &*GRIDS;
         let largest = Patch { corner: [0; 2], size: [side; 2] };
-        let nodes = grids[grid_of(largest, Shape::Square)].points.len();
+        let nodes = largest.square(Steep::default()).grid().points.len();
         if side * side * rays_per_pixel as usize <= (COST * nodes as f64) as usize {
             return None;
         }
@@ -263,7 +275,6 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             scouts: FourTracers::new(&tracer.clone().within(limits).watched(Trail::default())),
             beside: FourTracers::new(&tracer.clone().within(beside).watched(Trail::default())),
             tracers: FourTracers::new(&tracer.clone().watched(LeftOut::default())),
-            grids,
             instructions: Instructions::new(),
             functions: Functions::of(prepared, detection),
             in_air: matches!(prepared.assembly.region_around(camera.position, DVec3::X), Ok(None)),
@@ -288,11 +299,9 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     /// How rays lie in a patch of that level that are traced. Beside the edge of what is graded or curved leaves
     /// vary like a root; elsewhere square grids need fewer rays.
     fn shape(&self, patch: Patch, level: usize) -> Shape {
-        if self.faceted {
-            return Shape::Square;
-        }
         let above = level.checked_sub(1).and_then(|above| self.levels.get(above));
-        patch.shape(above.map_or([0; 2], |above| above.rough))
+        let steep = above.map_or(Steep::default(), |above| above.steep);
+        if self.faceted { patch.square(steep) } else { patch.shape(steep) }
     }
 
     /// The share of the patch that was fitted last that is to be traced for each sample.
@@ -312,7 +321,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let samples = width * height * self.rays_per_pixel as usize;
         let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
         let shape = self.shape(halves[0], self.levels.len());
-        let rays = 2 * self.grids[grid_of(halves[0], shape)].points.len();
+        let rays = 2 * shape.grid().points.len();
         let cost = COST * traced.max(LEAST_COST);
         (gain > cost * rays as f64).then_some(halves)
     }
@@ -328,7 +337,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let mut here = Level {
             patch,
             shape: self.shape(patch, level),
-            rough: [0; 2],
+            steep: Steep::default(),
             surfaces: Surfaces::new(),
             leaves: Vec::new(),
             launched: true,
@@ -346,7 +355,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     fn look(&mut self, here: &mut Level<N>) -> Fit {
         let camera = &self.prepared.scene.camera;
-        let grid = &self.grids[here.grid()];
+        let grid = here.grid();
         let rays: Vec<CameraRay> = (grid.points.iter())
             .map(|place| {
                 let [x, y] = here.patch.point(*place);
@@ -404,7 +413,6 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let at = 4 * number;
             let ray = |i: usize| i.min(four.len() - 1);
             let launches = std::array::from_fn(|i| self.detection.launch(camera, &four[ray(i)]));
-            let grid = &self.grids[here.grid()];
             let points = std::array::from_fn(|i| here.patch.point(grid.points[at + ray(i)]));
             let surfaces = std::array::from_fn(|i| first[at + ray(i)]);
             let least = DEEPER * self.prepared.limits.min_power;
@@ -497,7 +505,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let further_on = &mut self.further_on[i];
                 further_on.clear();
                 self.ways.with_others_beside(&faces, ray, further_on);
-                let point = here.patch.point(self.grids[here.grid()].points[ray]);
+                let point = here.patch.point(here.grid().points[ray]);
                 let mut terms = TermsOfLevels::at(point);
                 for (number, smooth) in branches.iter().enumerate() {
                     if !is_followed(number, ray) && faces.beside(smooth.first.path, ray) != 0 {
@@ -611,7 +619,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }));
         self.ways.gather(rays, starts, faces, least);
         self.ways.drop_lost(&mut leaves, &mut branches);
-        here.rough = self.fit_leaves(here.grid(), level, &mut leaves);
+        here.steep = self.fit_leaves(here.grid(), level, &mut leaves);
         self.fit_branches(here.grid(), level, &mut branches);
         // Rays may part where they were thought to choose.
         self.ways.drop_lost(&mut leaves, &mut branches);
@@ -625,10 +633,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         self.keep_what_is_needed(here, &mut leaves, &mut branches);
         self.find_choices_before(here, &starts, &mut leaves, &mut branches);
         for part in self.ways.some_have() {
-            let cuts = self.grids[here.grid()].cuts(part);
+            let cuts = here.grid().cuts(part);
             self.cuts = [0, 1].map(|axis| self.cuts[axis] + cuts[axis]);
         }
-        self.cuts = [0, 1].map(|axis| self.cuts[axis] + here.rough[axis]);
+        self.cuts = [0, 1].map(|axis| self.cuts[axis] + here.steep.along[axis]);
         let borders = known_borders.unwrap_or_else(|| self.ways.borders());
         here.borders = Some(borders);
         here.traced = (self.ways.borders_to_trace() / borders).min(1.0);
@@ -716,15 +724,15 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }
     }
 
-    /// Makes functions of the leaves that all rays have; where they are none, rays part. How many are none
-    /// because they vary too fast across and down.
+    /// Makes functions of the leaves that all rays have; where they are none, rays part. Which are none
+    /// because they are too steep.
     fn fit_leaves(
         &mut self,
-        grid: usize,
+        grid: &Grid,
         level: usize,
         smooth_leaves: &mut Vec<Smooth<Leaf<N>>>,
-    ) -> [usize; 2] {
-        let mut all_rough = [0; 2];
+    ) -> Steep {
+        let mut steep = Steep::default();
         let mut found: Vec<_> =
             (self.found.iter()).map(|(ray, leaf)| (leaf.path, *ray, leaf)).collect();
         found.sort_unstable_by_key(|(path, ray, _)| (*path, *ray));
@@ -742,25 +750,25 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             // Were there two of a ray, they would be no function.
             let of_rays = way.iter().map(|(_, ray, leaf)| (*ray, *leaf)).take(MOST_RAYS);
             let of_rays: ArrayVec<(usize, &Leaf<N>), MOST_RAYS> = of_rays.collect();
-            let grid = &self.grids[grid];
             match smooth(&of_rays, grid, self.functions, level, &mut self.coefficients) {
                 Ok(leaf) => smooth_leaves.push(leaf),
                 Err(rough) => {
-                    if let Rough::Along(axis) = rough {
-                        all_rough[axis] += 1;
+                    if let Rough::Steep { axis, far } = rough {
+                        steep.along[axis] += 1;
+                        steep.by_far[axis] += usize::from(far);
                     }
                     self.ways.part_at(path);
                 }
             }
         }
-        all_rough
+        steep
     }
 
     /// Makes functions of the branches at whose ends rays part; those that are none are followed
     /// from the branch before.
     fn fit_branches(
         &mut self,
-        grid: usize,
+        grid: &Grid,
         level: usize,
         smooth_branches: &mut Vec<Smooth<Branch<N>>>,
     ) {
@@ -779,7 +787,6 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let way = ways.next_if(|way| way[0].0 == path).unwrap_or_default();
                 let of_rays = way.iter().map(|(_, ray, branch)| (*ray, *branch)).take(MOST_RAYS);
                 let of_rays: ArrayVec<(usize, &Branch<N>), MOST_RAYS> = of_rays.collect();
-                let grid = &self.grids[grid];
                 match smooth(&of_rays, grid, self.functions, level, &mut self.coefficients) {
                     Ok(branch) => {
                         known.push(path);
@@ -909,23 +916,6 @@ impl TermsOfLevels {
 /// Whether a ray with these leaves has met nothing.
 pub(super) fn goes_past_all<const N: usize>(leaves: &[Leaf<N>]) -> bool {
     matches!(leaves, [leaf] if leaf.path == LAUNCHED)
-}
-
-/// Where rays are traced: see [`grid_of`].
-static GRIDS: LazyLock<[Grid; 5]> = LazyLock::new(|| {
-    let [smallest, small, large] = [MOST - 2, MOST - 1, MOST].map(Grid::square);
-    [smallest, small, large, Grid::low(), Grid::narrow()]
-});
-
-/// Which of the grids is that of a patch.
-fn grid_of(patch: Patch, shape: Shape) -> usize {
-    let [width, height] = patch.size;
-    let side = width.max(height);
-    match shape {
-        Shape::Square => usize::from(side > SMALL / 2) + usize::from(side > SMALL),
-        Shape::Low => 3,
-        Shape::Narrow => 4,
-    }
 }
 
 /// How large patches may be, pixels: no larger than the smallest of several devices or parts looks,

@@ -365,8 +365,13 @@ impl<const N: usize> Interpolated for Branch<N> {
 pub(super) enum Rough {
     /// Some rays do not have it.
     Parted,
-    /// It varies too much along an axis.
-    Along(usize),
+    /// It varies too fast.
+    Steep {
+        /// Along this axis faster than along the other.
+        axis: usize,
+        /// Whether by far.
+        far: bool,
+    },
 }
 
 /// Makes a function of what the rays of a patch have, which are given by their numbers: all at the
@@ -423,7 +428,8 @@ pub(super) fn smooth<T: Interpolated>(
         Ok(smooth)
     } else {
         coefficients.truncate(start);
-        Err(Rough::Along(grid.rougher(&lanes)))
+        let (axis, far) = grid.rougher(&lanes);
+        Err(Rough::Steep { axis, far })
     }
 }
 

@@ -171,17 +171,24 @@ fn interpolated_paths_of_pulses_are_those_of_traced_rays() {
 }
 
 #[test]
-fn long_and_rough_patches_have_more_nodes_along_their_short_side() {
-    let shape = |size, rough| Patch { corner: [0; 2], size }.shape(rough);
-    for size in [[32, 32], [32, 8], [8, 16], [4, 2], [2, 2]] {
-        assert_eq!(shape(size, [0; 2]), Shape::Square);
-        assert_eq!(shape(size, [3; 2]), Shape::Square);
-    }
-    assert_eq!([[32, 4], [16, 2]].map(|size| shape(size, [0; 2])), [Shape::Low; 2]);
-    assert_eq!([[4, 32], [2, 16]].map(|size| shape(size, [0; 2])), [Shape::Narrow; 2]);
-    assert_eq!([[32, 32], [32, 16], [8, 4]].map(|size| shape(size, [0, 1])), [Shape::Low; 3]);
-    assert_eq!([[32, 32], [16, 32], [4, 8]].map(|size| shape(size, [2, 1])), [Shape::Narrow; 3]);
-    // What varies along the long side is divided that way.
-    assert_eq!(shape([16, 32], [0, 1]), Shape::Square);
-    assert_eq!(shape([4, 4], [0, 1]), Shape::Square);
+fn long_and_steep_patches_have_more_nodes_along_their_short_side() {
+    let shape = |size, steep| Patch { corner: [0; 2], size }.shape(steep);
+    let shapes = |sizes: [[usize; 2]; 4], steep| sizes.map(|size| shape(size, steep));
+    let by_far = |by_far| Steep { along: by_far, by_far };
+    let flat = Steep::default();
+    let sides = [5, 5, 4, 3].map(Shape::Square);
+    assert_eq!(shapes([[32, 32], [8, 16], [8, 4], [4, 2]], flat), sides);
+    assert_eq!(shapes([[32, 4], [32, 2], [16, 2], [64, 8]], flat), [Shape::Low; 4]);
+    assert_eq!(shapes([[4, 32], [2, 32], [2, 16], [8, 64]], flat), [Shape::Narrow; 4]);
+    let down = by_far([0, 1]);
+    assert_eq!(shapes([[32, 32], [32, 16], [8, 8], [8, 4]], down), [Shape::Low; 4]);
+    let across = by_far([2, 1]);
+    assert_eq!(shapes([[32, 32], [16, 32], [8, 8], [4, 8]], across), [Shape::Narrow; 4]);
+    // What is steep along the long side is divided that way, and what is nearly as steep both ways has
+    // the most nodes.
+    let most = [Shape::Square(MOST); 4];
+    assert_eq!(shapes([[16, 32], [4, 8], [4, 4], [4, 2]], down), most);
+    let along = Steep { along: [0, 2], by_far: [0; 2] };
+    assert_eq!(shapes([[32, 32], [32, 16], [8, 8], [4, 4]], along), most);
+    assert_eq!(shapes([[32, 32], [32, 16], [8, 8], [4, 4]], by_far([3; 2])), most);
 }
