@@ -4,9 +4,12 @@ use crate::equation_of_motion::{GradedHalf, fresnel, gaussian, refract};
 use crate::long::count;
 use crate::rays::{Numbers, assembly, launch, refusal};
 use cloakroom::assembly::Assembly;
+use cloakroom::render::{ChannelSet, PreparedScene, Supervision, render};
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 const LIMITS: Limits = Limits { min_power: 1e-9, tolerance: 1e-8 };
 
@@ -259,14 +262,51 @@ fn rays_start_in_round_birefringent_devices() {
     }
 }
 
+/// A picture of colors alone takes rays that meet nothing for such as see the photograph past all devices. Those
+/// that start in a medium are none of them.
+#[test]
+fn what_is_seen_out_of_a_medium_is_the_same_however_much_is_asked_for() {
+    const CARPET: &str = "kind = 'gaussian-carpet'";
+    const BLOCK: &str = "kind = 'body'\nshape = 'box'\nsize = [60, 60, 60]\nindex = 1.5";
+    const BALL: &str = "kind = 'body'\nshape = 'sphere'\nradius = 5\nindex = 1.5";
+    const TURNED: &str =
+        "kind = 'body'\nshape = 'box'\nsize = [20, 30, 30]\nindex = 1.5\nrotation = 20";
+    for (projection, position, device) in [
+        ("", [-10.0, 6.0, -30.0], CARPET),
+        ("", [-10.0, 3.0, 5.0], BLOCK),
+        ("", [-1.0, -0.5, 0.0], BALL),
+        // Only some of the rays start in it.
+        ("projection = 'orthographic'\nwidth = 40\n", [-5.0, 0.0, 0.0], TURNED),
+    ] {
+        for light in ["", "[light]\nspectrum = 'D65'\n"] {
+            let text = format!(
+                "[camera]\n{projection}position = {position:?}\n\
+                 target = [40, 2, 3]\nresolution = [48, 36]\nsamples = 2\n\
+                 [picture]\nchannels = ['group_delay']\n{light}[[device]]\n{device}\n"
+            );
+            let loaded = cloakroom::scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
+            let prepared = PreparedScene::new(&loaded.scene).unwrap();
+            let supervision = Supervision { rows_done: &|_| {}, stop: &AtomicBool::new(false) };
+            let [alone, with_all] = [ChannelSet::Image, ChannelSet::Everything]
+                .map(|channels| render(&prepared, channels, &supervision).unwrap().picture);
+            for color in ["R", "G", "B"] {
+                let [alone, with_all] =
+                    [&alone, &with_all].map(|picture| &picture.channel(color).unwrap().samples);
+                let off = (0..48 * 36).map(|i| (alone.get(i) - with_all.get(i)).abs());
+                let off = off.fold(0.0, f64::max);
+                // Where more is asked for weaker branches are followed, too.
+                assert!(off < 1e-4, "{off}: {text}");
+            }
+        }
+    }
+}
+
 #[test]
 fn nothing_starts_in_metal() {
     let scene =
         "[camera]\nposition = [0, 0, 0]\ntarget = [1, 0, 0]\n[[device]]\nkind = \"square-cloak\"\n";
-    let loaded =
-        cloakroom::scene_file::parse(scene, "test", std::path::Path::new(""), &[]).unwrap();
-    let error =
-        cloakroom::render::PreparedScene::new(&loaded.scene).map(|_| ()).unwrap_err().to_string();
+    let loaded = cloakroom::scene_file::parse(scene, "test", Path::new(""), &[]).unwrap();
+    let error = PreparedScene::new(&loaded.scene).map(|_| ()).unwrap_err().to_string();
     assert!(error.contains("in metal or an opaque body"), "{error}");
     // A device that only reaches into a body.
     let half = "[[device]]\nkind = \"sphere-cloak\"\nposition = [30, 0, 0]\n";

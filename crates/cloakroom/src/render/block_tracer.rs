@@ -177,7 +177,8 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
     /// Whether rays go past all there is, but for the photograph.
     pub fn meet_nothing(&self, rays: &[CameraRay; 4]) -> bool {
         let any = &self.tracers.tracers[0];
-        rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
+        self.prepared.starts_in_air
+            && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
     }
 
     /// Traces the rays of a block.

@@ -306,6 +306,8 @@ pub struct PreparedScene<'s> {
     pub coherence: Option<Coherence>,
     /// How wide a pixel is in the middle of the picture.
     pub(super) pixel: PixelWidth,
+    /// Whether all camera rays start in air, and none in a medium.
+    pub(super) starts_in_air: bool,
     /// The rectangle in space on which the photograph is.
     pub screen: Screen,
     /// The photograph.
@@ -339,10 +341,9 @@ impl<'s> PreparedScene<'s> {
     /// As [`PreparedScene::new`].
     pub fn with_images(scene: &'s Scene, images: &mut Images) -> Result<Self, PreparedSceneError> {
         let assembly = assembly(scene)?;
-        if let Some(device) = camera_inside(scene, &assembly) {
-            let device = scene.device_name(device);
-            return Err(PreparedSceneError::CameraInside { device });
-        }
+        let starts_in_air = rays_start_in_air(scene, &assembly).map_err(|device| {
+            PreparedSceneError::CameraInside { device: scene.device_name(device) }
+        })?;
         let unreadable = |key: &str| {
             let key = key.to_owned();
             move |error| PreparedSceneError::Image { key, error }
@@ -390,6 +391,7 @@ impl<'s> PreparedScene<'s> {
             limits,
             coherence,
             pixel,
+            starts_in_air,
             screen,
             image,
             averaging: Averaging::Sharp,
@@ -471,18 +473,24 @@ impl<'s> PreparedScene<'s> {
     }
 }
 
-/// The device in whose metal, or opaque inside, a camera ray would start. The rays of an
-/// orthographic camera start side by side: every pixel is looked at.
-fn camera_inside(scene: &Scene, assembly: &Assembly) -> Option<usize> {
+/// Whether all camera rays start in air, and none in a medium. Those of an orthographic camera start side
+/// by side: every pixel is looked at.
+///
+/// # Errors
+///
+/// The device in whose metal, or opaque inside, a ray would start.
+fn rays_start_in_air(scene: &Scene, assembly: &Assembly) -> Result<bool, usize> {
     let camera = &scene.camera;
     let forward = camera.forward();
-    let inside = |origin: DVec3| assembly.region_around(origin, forward).err();
+    let in_air =
+        |origin: DVec3| assembly.region_around(origin, forward).map(|region| region.is_none());
     match camera.projection {
-        Projection::Perspective => inside(camera.position),
+        Projection::Perspective => in_air(camera.position),
         Projection::Orthographic => {
             let [width, height] = camera.resolution;
-            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).find_map(|(x, y)| {
-                inside(camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5).origin)
+            let mut pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            pixels.try_fold(true, |all, (x, y)| {
+                Ok(in_air(camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5).origin)? && all)
             })
         }
     }

@@ -42,6 +42,9 @@ const EVENTS_DESERVED: f64 = 10.0;
 /// No tree meets more than so many then for each factor of ten between that power and the least.
 const MOST_EVENTS: f64 = 10_000.0;
 
+/// A way through a medium that is followed step by step counts as so many surfaces: it takes as long.
+const EVENTS_PER_INTEGRATED_WAY: u32 = 16;
+
 /// As often, in surfaces met, it is looked whether a branch runs in place: into a corner of media in
 /// which rays and wave vectors go different ways, say, where it never arrives.
 const EVENTS_PER_LOOK: u32 = 8;
@@ -349,6 +352,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     },
                     Place::Region { device, region: number } => {
                         let region = self.assembly.device(device).region(number);
+                        if region.is_integrated() && self.draw.is_none() {
+                            let more = EVENTS_PER_INTEGRATED_WAY - 1;
+                            self.most_events = self.most_events.saturating_sub(more);
+                        }
                         if let Some(planes) = self.recorder.planes(branch.path) {
                             self.go_to_planes(branch, (device, number), planes)
                         } else if region.takes_four() {

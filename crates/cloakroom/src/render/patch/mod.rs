@@ -188,8 +188,6 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     /// Those that the processor has; they change no number.
     instructions: Instructions,
     functions: Functions<'a>,
-    /// Whether rays start in air.
-    in_air: bool,
     /// Whether rays go through graded media.
     graded: bool,
     /// Whether all media are homogeneous and between planes.
@@ -248,7 +246,6 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         rays_per_pixel: u32,
     ) -> Option<Self> {
         let graded = prepared.assembly.is_graded();
-        let camera = &prepared.scene.camera;
         let exact = prepared.scene.trace.exact
             || prepared.coherence.is_some()
             || prepared.assembly.absorbs()
@@ -277,7 +274,6 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             tracers: FourTracers::new(&tracer.clone().watched(LeftOut::default())),
             instructions: Instructions::new(),
             functions: Functions::of(prepared, detection),
-            in_air: matches!(prepared.assembly.region_around(camera.position, DVec3::X), Ok(None)),
             graded,
             faceted: regions.all(|region| !region.faces().is_empty()),
             rays_per_pixel,
@@ -392,7 +388,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let as_first = |ray: &usize| first[*ray] == first[0];
         self.cuts = grid.cuts(bits((0..rays.len()).filter(as_first)));
         let are_planes = || here.surfaces.iter().flatten().all(|surface| any.is_plane(*surface));
-        if !(is_one || self.in_air && are_planes()) {
+        if !(is_one || self.prepared.starts_in_air && are_planes()) {
             here.surfaces.clear();
             return Fit::Shared;
         }
