@@ -271,7 +271,7 @@ mod tests {
                 (grid.points[..grid.nodes()].iter()).map(|point| [value(*point); LANES]).collect();
             let coefficients = grid.coefficients(&at_nodes);
             for point in grid.points.iter().copied().chain([[0.3, -0.8], [0.91, 0.17]]) {
-                let sum = Terms::at(point, shape(&grid)).sum(&coefficients);
+                let sum = Terms::at(point, shape(grid)).sum(&coefficients);
                 assert!((sum[3] - value(point)).abs() < 1e-14 * largest, "{point:?}: {sum:?}");
             }
             assert!(grid.points.len() <= 64, "they are bits of a number");
