@@ -3,7 +3,7 @@
 
 use cloakroom::render;
 use cloakroom::scene_file::{self, Loaded};
-use cloakroom::trace::{Launch, Limits, TraceStats, Tracer};
+use cloakroom::trace::{Launch, Limits, PathRecorder, PathSegment, TraceStats, Tracer};
 use glam::DVec3;
 use optics::wave::transverse_basis;
 use std::path::Path;
@@ -159,6 +159,39 @@ fn light_that_a_graded_medium_keeps_has_no_end() {
     let keys = format!("kind = \"graded\"\nshape = \"circle\"\nindex = [{}]", rows.join(", "));
     let stats = sound(&keys, DVec3::new(20.0 * 0.6f64.sqrt(), 0.0, 0.0), DVec3::Y, 1e-6);
     assert_eq!((stats.endless, stats.lost), (1, 0));
+}
+
+/// Counts the ways from surface to surface.
+#[derive(Clone, Copy, Default)]
+struct Count(usize);
+
+impl<const N: usize> PathRecorder<N> for Count {
+    fn record(&mut self, _segment: impl FnOnce() -> PathSegment<N>) {
+        self.0 += 1;
+    }
+}
+
+/// A ray that starts in an endless carpet and looks along it met 65,000 surfaces, each at the end of a way
+/// that is followed step by step.
+#[test]
+fn light_that_is_trapped_where_ways_take_long_is_followed_along_fewer() {
+    let along_a_carpet = "kind = \"grating-carpet\"\nperiod = 20\nfloor = 400\naxis = [0, 1, 0]\n\
+        design_wavelength_nm = 550";
+    let loaded = scene(along_a_carpet).unwrap();
+    let assembly = render::assembly(&loaded.scene).unwrap();
+    let tracer = Tracer::new(&assembly, Limits { min_power: 1e-4, tolerance: 1e-6 });
+    let mut tracer = tracer.watched(Count::default());
+    let origin = DVec3::new(-22.0, 68.0, -4.0);
+    let mut most = 0;
+    for i in 0..8 {
+        let direction = (DVec3::Z * f64::from(i) - origin).normalize();
+        let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+        let (leaves, outcome) =
+            tracer.trace(&Launch { origin, direction, electric: [h.into(), v.into()] });
+        outcome.assert_balanced(leaves, 1e-9, &i);
+        most = most.max(std::mem::take(tracer.recorder()).0);
+    }
+    assert!((300..5_000).contains(&most), "{most}");
 }
 
 /// The parts of an axis beside one of 1e164 were no zeros, but their squares were: light that ran in

@@ -31,19 +31,19 @@ pub struct Limits {
     pub tolerance: f64,
 }
 
-/// Few trees meet this many surfaces. Those that do, by light that is trapped or runs almost along
-/// the device, are followed on with the strongest branch first.
-const MANY_EVENTS: u32 = 5_000;
+/// What a tree may cost, in terms of a surface met. Few do. Those that do, by light that is trapped or runs
+/// almost along the device, are followed on with the strongest branch first.
+const MUCH: u32 = 5_000;
 
-/// So many more surfaces they may meet for each share of the least power that still waits then;
-/// what is left counts as pruned.
-const EVENTS_DESERVED: f64 = 10.0;
+/// So much more they may cost for each share of the least power that still waits then; what is left
+/// counts as pruned.
+const DESERVED: f64 = 10.0;
 
-/// No tree meets more than so many then for each factor of ten between that power and the least.
-const MOST_EVENTS: f64 = 10_000.0;
+/// No tree costs more than so much then for each factor of ten between that power and the least.
+const MOST_DESERVED: f64 = 10_000.0;
 
-/// A way through a medium that is followed step by step counts as so many surfaces: it takes as long.
-const EVENTS_PER_INTEGRATED_WAY: u32 = 16;
+/// What a way through a medium costs that is followed step by step, beside the surface that it comes to.
+const COST_OF_INTEGRATION: u32 = 15;
 
 /// As often, in surfaces met, it is looked whether a branch runs in place: into a corner of media in
 /// which rays and wave vectors go different ways, say, where it never arrives.
@@ -80,9 +80,11 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) waiting: Vec<Branch<N>>,
     pub(super) leaves: Vec<Leaf<N>>,
     pub(super) outcome: Outcome<N>,
-    /// Surfaces met, and how many may be.
+    /// Surfaces met.
     events: u32,
-    most_events: u32,
+    /// What the tree has cost, and may cost.
+    cost: u32,
+    most_cost: u32,
     /// When the branch of that time is looked at.
     next_look: u32,
     /// What it was like the last time, if it is the same branch, and how many others waited.
@@ -144,7 +146,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             leaves: Vec::new(),
             outcome: Outcome::default(),
             events: 0,
-            most_events: MANY_EVENTS,
+            cost: 0,
+            most_cost: MUCH,
             next_look: EVENTS_PER_LOOK,
             looked_at: None,
             heaped: None,
@@ -235,7 +238,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
         if let Some(draw) = &mut self.draw {
             draw.begin(branch);
-            self.most_events = MOST_EVENTS_DRAWN;
+            self.most_cost = MOST_EVENTS_DRAWN;
         }
         if !self.start(branch) {
             self.take_next(branch)?;
@@ -277,13 +280,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
-        (self.most_events, self.heaped) = (MANY_EVENTS, None);
+        (self.most_cost, self.heaped) = (MUCH, None);
         self.start_anew();
     }
 
     /// Counts events from here on.
     pub(super) fn start_anew(&mut self) {
-        self.events = 0;
+        (self.events, self.cost) = (0, 0);
         (self.next_look, self.looked_at) = (EVENTS_PER_LOOK, None);
     }
 
@@ -335,7 +338,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             let power = largest(&branch.power);
             let goes_on = if self.events >= self.next_look && self.runs_in_place(branch) {
                 self.cut(branch.power)
-            } else if self.events >= self.most_events && !self.may_go_on(branch) {
+            } else if self.cost >= self.most_cost && !self.may_go_on(branch) {
                 self.cut_all(branch)
             } else if power < self.limits.min_power {
                 self.cut(branch.power)
@@ -343,6 +346,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 self.lose(branch.power)
             } else {
                 self.events += 1;
+                self.cost += 1;
                 match branch.place {
                     Place::Air => match self.recorder.planes(branch.path) {
                         Some(planes) if branch.path == LAUNCHED => {
@@ -353,8 +357,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     Place::Region { device, region: number } => {
                         let region = self.assembly.device(device).region(number);
                         if region.is_integrated() && self.draw.is_none() {
-                            let more = EVENTS_PER_INTEGRATED_WAY - 1;
-                            self.most_events = self.most_events.saturating_sub(more);
+                            self.cost += COST_OF_INTEGRATION;
                         }
                         if let Some(planes) = self.recorder.planes(branch.path) {
                             self.go_to_planes(branch, (device, number), planes)
@@ -470,8 +473,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             left.iter_mut().zip(waiting.power).for_each(|(left, power)| *left += power);
         }
         let shares = largest(&left) / self.limits.min_power;
-        let most = MOST_EVENTS * shares.log10().max(0.0);
-        self.most_events += (EVENTS_DESERVED * shares).min(most) as u32;
+        let most = MOST_DESERVED * shares.log10().max(0.0);
+        self.most_cost += (DESERVED * shares).min(most) as u32;
         true
     }
 
