@@ -6,6 +6,7 @@ use cloakroom::scene_file::{self, Loaded};
 use cloakroom::trace::{Launch, Limits, PathRecorder, PathSegment, TraceStats, Tracer};
 use glam::DVec3;
 use optics::wave::transverse_basis;
+use robustness::Draws;
 use std::path::Path;
 
 fn scene(text: &str) -> Result<Loaded, String> {
@@ -19,11 +20,14 @@ fn sound(keys: &str, origin: DVec3, direction: DVec3, tolerance: f64) -> TraceSt
     let assembly = render::assembly(&loaded.scene).unwrap();
     let tracer = Tracer::new(&assembly, Limits { min_power: 1e-4, tolerance });
     let mut tracer = robustness::timed(tracer, &assembly);
-    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-    let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
-    let (leaves, outcome) = tracer.trace(&launch);
+    let (leaves, outcome) = tracer.trace(&launched(origin, direction));
     assert!(robustness::examine(origin, leaves, outcome).is_ok(), "{keys}: {leaves:?} {outcome:?}");
     outcome.stats
+}
+
+fn launched(origin: DVec3, direction: DVec3) -> Launch<2> {
+    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+    Launch { origin, direction, electric: [h.into(), v.into()] }
 }
 
 /// Devices so small that surfaces have no normals in double precision lost light.
@@ -103,9 +107,7 @@ fn evanescent_waves_in_media_that_hardly_absorb_are_no_rays() {
     let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-9, tolerance: 1e-6 });
     let origin = DVec3::new(-41.40687795969556, 68.45049640163961, -6.760059984153486);
     let direction = DVec3::new(0.543574349903507, -0.826157068311472, 0.14829505927701575);
-    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-    let (leaves, outcome) =
-        tracer.trace(&Launch { origin, direction, electric: [h.into(), v.into()] });
+    let (leaves, outcome) = tracer.trace(&launched(origin, direction));
     outcome.assert_balanced(leaves, 1e-12, &"the corner");
     for leaf in leaves {
         // Along z nothing turns light but the ends, which it does not reach.
@@ -129,8 +131,7 @@ fn the_strongest_of_trapped_light_is_followed_first() {
         let origin = DVec3::new(-100.0, 0.0, 0.0);
         let aim = DVec3::new(0.0, 0.3 * f64::from(i) - 6.0, 1.0 + 0.05 * f64::from(i));
         let direction = (aim - origin).normalize();
-        let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-        let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
+        let launch = launched(origin, direction);
         let (leaves, outcome) = all.trace(&launch);
         outcome.assert_balanced(leaves, 1e-12, &i);
         cut += u32::from(outcome.stats.endless > 0);
@@ -185,13 +186,55 @@ fn light_that_is_trapped_where_ways_take_long_is_followed_along_fewer() {
     let mut most = 0;
     for i in 0..8 {
         let direction = (DVec3::Z * f64::from(i) - origin).normalize();
-        let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-        let (leaves, outcome) =
-            tracer.trace(&Launch { origin, direction, electric: [h.into(), v.into()] });
+        let (leaves, outcome) = tracer.trace(&launched(origin, direction));
         outcome.assert_balanced(leaves, 1e-9, &i);
         most = most.max(std::mem::take(tracer.recorder()).0);
     }
     assert!((300..5_000).contains(&most), "{most}");
+}
+
+/// Light that is shorter along an endless device than any wave in air never gets out: where nobody asks for
+/// its way it is not followed. All other light is.
+#[test]
+fn light_that_an_endless_device_keeps_is_cut_where_it_starts() {
+    let mut draws = Draws::Seed(17);
+    let (mut kept, mut others) = (0, 0);
+    for device in [
+        "kind = \"grating-carpet\"",
+        "kind = \"gaussian-carpet\"",
+        "kind = \"gaussian-carpet\"\nlength = 60",
+        "kind = \"body\"\nshape = \"slab\"\nindex = 1.5",
+        "kind = \"body\"\nshape = \"slab\"\nlength = 30\nindex = 1.5",
+        "kind = \"body\"\nshape = \"cylinder\"\nradius = 8\nindex = 1.3",
+        "kind = \"body\"\nshape = \"box\"\nsize = [20, 20, 1e6]\nindex = 1.5",
+        "kind = \"body\"\nshape = \"slab\"\nthickness = 12\n\
+         uniaxial = { ordinary = 1.5, extraordinary = 1.2, optic_axis = [1, 1, 0.3] }",
+        "kind = \"cylinder-cloak\"\nmaterial = \"radial-uniaxial\"\ncore = \"open\"",
+        "kind = \"square-cloak\"\nmaterial = \"positive-uniaxial\"",
+        "kind = \"double-gaussian-cloak\"",
+        "kind = \"graded\"\nwidth = 20\nheight = 20\nindex = [[1, 1, 1, 1], [1, 1.5, 1.5, 1], [1, 1.5, 1.5, 1], [1, 1, 1, 1]]",
+    ] {
+        let loaded = scene(&format!("{device}\nrotation = 20\naxis = [0.2, 0.1, 1]")).unwrap();
+        let assembly = render::assembly(&loaded.scene).unwrap();
+        let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-3, tolerance: 1e-6 });
+        let mut follower = tracer.clone().watched(Count::default());
+        for _ in 0..40 {
+            let origin = 6.0 * draws.share() * draws.direction();
+            let ray = launched(origin, draws.direction());
+            if !matches!(assembly.region_around(origin, ray.direction), Ok(Some(_))) {
+                continue;
+            }
+            let (leaves, outcome) = tracer.trace(&ray);
+            let (followed, of_followed) = follower.trace(&ray);
+            assert_eq!(leaves, followed, "{device} {ray:?}");
+            outcome.assert_balanced(leaves, 1e-9, &(device, ray));
+            match outcome == of_followed {
+                true => others += 1,
+                false => kept += 1,
+            }
+        }
+    }
+    assert!(kept > 20 && others > 200, "{kept} {others}");
 }
 
 /// The parts of an axis beside one of 1e164 were no zeros, but their squares were: light that ran in

@@ -35,6 +35,9 @@ pub struct Assembly {
     guests: Vec<Vec<u16>>,
     /// Whether there is one device at most, and no body: around it is air, and nothing touches it.
     pub(crate) simple: bool,
+    /// Of a single device that absorbs nothing the axes of its frame along which it has no end, as ones among
+    /// zeros: none else. What a wave vector has along them is never changed.
+    pub(crate) endless_axes: DVec3,
     /// k0, the wave number in vacuum, 1/cm.
     pub(crate) vacuum_wave_number: f64,
 }
@@ -84,8 +87,21 @@ impl Assembly {
             .collect();
         let simple = devices.len() <= 1 && bodies.is_empty();
         let films = devices.iter().map(Placed::films_in_world).collect();
-        Self { interfaces, bodies, films, guests, devices, simple, vacuum_wave_number: 0.0 }
-            .with_wavelength(550.0)
+        let (vacuum_wave_number, endless_axes) = (0.0, DVec3::ZERO);
+        let mut assembly = Self {
+            interfaces,
+            bodies,
+            films,
+            guests,
+            devices,
+            simple,
+            endless_axes,
+            vacuum_wave_number,
+        };
+        if let ([device], false) = (&assembly.devices[..], assembly.absorbs()) {
+            assembly.endless_axes = device.structure.hull.endless_axes();
+        }
+        assembly.with_wavelength(550.0)
     }
 
     /// The same assembly in light of another wavelength (in vacuum, nm) than 550 nm. Only

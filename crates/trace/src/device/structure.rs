@@ -219,6 +219,19 @@ impl Hull {
             && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
     }
 
+    /// The axes of the device's frame along which it has no end and never changes, as ones among zeros.
+    #[must_use]
+    pub fn endless_axes(&self) -> DVec3 {
+        if let Some(Body { shape: Convex::Box { half }, .. }) = self.body {
+            return DVec3::select(half.is_finite_mask(), DVec3::ZERO, DVec3::ONE);
+        }
+        let parts = self.solids.iter().chain(&self.filled).chain(&self.thin_mirror);
+        parts.filter_map(Solid::bounds).fold(DVec3::ONE, |axes, [low, high]| {
+            let has_an_end = low.is_finite_mask() | high.is_finite_mask();
+            DVec3::select(has_an_end, DVec3::ZERO, axes)
+        })
+    }
+
     /// The least and the greatest coordinates of what it spans when it is at a place, infinite (or
     /// very large) where it has no end; `None` if it spans nothing.
     #[must_use]

@@ -12,6 +12,9 @@ pub trait PathRecorder<const N: usize> {
     /// Whether branches may become one under way: where nobody watches.
     const JOINS: bool = false;
 
+    /// Whether light that never gets out is cut where it starts: where nobody asks for its way.
+    const CUTS_KEPT_LIGHT: bool = false;
+
     /// Called for each piece of a branch's way from surface to surface.
     fn record(&mut self, segment: impl FnOnce() -> PathSegment<N>);
 
@@ -100,6 +103,7 @@ impl PathTime {
 
 impl<const N: usize> PathRecorder<N> for () {
     const JOINS: bool = true;
+    const CUTS_KEPT_LIGHT: bool = true;
 
     #[inline(always)]
     fn record(&mut self, _: impl FnOnce() -> PathSegment<N>) {}

@@ -59,13 +59,15 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             [] => self.lose(branch.power),
             [wave] if wave.electric.is_none() => {
                 launch_as(branch, &medium, wave);
-                true
+                if self.is_kept(branch) { self.cut(branch.power) } else { true }
             }
             waves => {
                 for (wave, amplitudes) in waves.iter().zip(amplitudes(branch, waves)) {
                     let started = branch.as_wave(wave, amplitudes);
                     let power = largest(&started.power);
-                    if self.recorder.went_on(branch.path, started.path, power) {
+                    if self.is_kept(&started) {
+                        self.cut(started.power);
+                    } else if self.recorder.went_on(branch.path, started.path, power) {
                         self.await_turn(started);
                     }
                 }
@@ -73,7 +75,20 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             }
         }
     }
+
+    /// Whether light never gets out of the device in which it starts: along what is endless it is shorter than
+    /// any wave in air, and stays so.
+    fn is_kept(&self, started: &Branch<N>) -> bool {
+        let along = started.wave_vector * self.assembly.endless_axes;
+        W::CUTS_KEPT_LIGHT
+            && along.length_squared() > SHORTER
+            && self.draw.is_none()
+            && !self.screen_touches
+    }
 }
+
+/// The square of how often a wave fits into one in air that is certainly shorter, whatever is rounded.
+const SHORTER: f64 = 1.0 + 1e-9;
 
 /// Launches a branch as the one wave that both polarizations share.
 fn launch_as<const N: usize>(branch: &mut Branch<N>, medium: &Medium, wave: &RayWave) {

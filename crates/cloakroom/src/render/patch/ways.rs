@@ -152,6 +152,8 @@ impl<const N: usize> Trail<N> {
 }
 
 impl<const N: usize> PathRecorder<N> for Trail<N> {
+    const CUTS_KEPT_LIGHT: bool = true;
+
     #[inline(always)]
     fn record(&mut self, _: impl FnOnce() -> PathSegment<N>) {}
 
@@ -704,6 +706,8 @@ impl LeftOut {
 }
 
 impl<const N: usize> PathRecorder<N> for LeftOut {
+    const CUTS_KEPT_LIGHT: bool = true;
+
     #[inline(always)]
     fn record(&mut self, _: impl FnOnce() -> PathSegment<N>) {}
 
