@@ -1,9 +1,10 @@
 //! Pictures whose rays share their neighbours' work, against those of rays traced one by one.
 
 use crate::draws::Draws;
-use crate::scenes::scene_seen;
+use crate::scenes::{scene_of, scene_seen};
+use cloakroom::device::CATALOGUE;
 use cloakroom::output::to_srgb;
-use cloakroom::render::{ChannelSet, PreparedScene, Supervision, render};
+use cloakroom::render::{ChannelSet, PreparedScene, Supervision, Tile, render_tile};
 use cloakroom::scene_file;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -11,6 +12,7 @@ use toml::{Table, Value};
 
 /// Width and height of the pictures: six patches.
 const SIZE: [i64; 2] = [96, 64];
+const WHOLE: Tile = Tile { left: 0, top: 0, width: 96, height: 64 };
 
 /// Samples of each pixel.
 const SAMPLES: i64 = 4;
@@ -25,7 +27,35 @@ const ROUNDED: usize = 3;
 /// If the picture differs from that of rays traced one by one.
 pub fn interpolate(draws: &mut Draws<'_>) -> u64 {
     let scene = scene_seen(draws, SIZE, SAMPLES);
-    compare(draws, &scene, Path::new("/nowhere"))
+    compare(draws, &scene, Path::new("/nowhere"), WHOLE)
+}
+
+/// Looks straight onto a random device, as the paper does, at what is about the middle of a large picture; how many
+/// rays that takes. There rays at the nodes of patches meet edges, for these lie where the picture is halved.
+///
+/// # Panics
+///
+/// If the picture differs from that of rays traced one by one.
+pub fn interpolate_straight(draws: &mut Draws<'_>) -> u64 {
+    let entry = draws.pick(CATALOGUE);
+    let mut scene = scene_of(draws, entry);
+    if let Some(Value::Array(devices)) = scene.get_mut("device") {
+        for device in devices.iter_mut().filter_map(Value::as_table_mut) {
+            device.remove("rotation");
+            device.remove("axis");
+        }
+    }
+    let [width, height] = *draws.pick(&[[640, 480], [512, 384], [1024, 1024], [1280, 720]]);
+    let camera = Table::from_iter([
+        ("resolution".to_owned(), Value::from(vec![width, height])),
+        ("samples".to_owned(), SAMPLES.into()),
+    ]);
+    scene.insert("camera".to_owned(), camera.into());
+    // Patches of any of the four quarters.
+    let mut first =
+        |side: u32, own: u32| side / 2 - own / 4 - own / 2 * u32::from(draws.chance(128));
+    let [left, top] = [first(width, WHOLE.width), first(height, WHOLE.height)];
+    compare(draws, &scene, Path::new("/nowhere"), Tile { left, top, ..WHOLE })
 }
 
 /// Looks at bars behind a pane in one device, at a comb, or at balls that only a mirror shows; how many rays
@@ -43,7 +73,7 @@ pub fn interpolate_small(draws: &mut Draws<'_>) -> u64 {
         false => mirrored(draws),
     };
     let scene = text.parse().expect("TOML");
-    let rays = compare(draws, &scene, folder.path());
+    let rays = compare(draws, &scene, folder.path(), WHOLE);
     assert!(rays > 1 || !combs, "refused:\n{scene}");
     rays
 }
@@ -163,8 +193,8 @@ fn camera() -> String {
     )
 }
 
-/// `folder` has the files that the scene names.
-fn compare(draws: &mut Draws<'_>, scene: &Table, folder: &Path) -> u64 {
+/// Compares a part of a picture. `folder` has the files that the scene names.
+fn compare(draws: &mut Draws<'_>, scene: &Table, folder: &Path, part: Tile) -> u64 {
     // Pictures differ within the tolerance: coarser ones would show.
     let tolerance = 10f64.powf(draws.between(-9.0, -6.0));
     let looked_at = |exact: bool| {
@@ -177,8 +207,8 @@ fn compare(draws: &mut Draws<'_>, scene: &Table, folder: &Path) -> u64 {
         let prepared = PreparedScene::new(&loaded.scene).ok()?;
         let stop = AtomicBool::new(false);
         let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-        let picture =
-            render(&prepared, ChannelSet::Image, &supervision).expect("a picture").picture;
+        let rendered = render_tile(&prepared, ChannelSet::Image, part, &supervision);
+        let picture = rendered.expect("a picture").picture;
         Some(to_srgb(&picture).expect("an image"))
     };
     let (Some(shared), Some(exact)) = (looked_at(false), looked_at(true)) else { return 1 };

@@ -22,7 +22,7 @@ pub use birefringence::hardly_birefringent;
 pub use cuts::cut_glass;
 pub use draws::Draws;
 pub use flights::fly;
-pub use interpolation::{interpolate, interpolate_small};
+pub use interpolation::{interpolate, interpolate_small, interpolate_straight};
 pub use rays::{Fault, examine, launch, starts_in_air, timed};
 pub use scenes::{SoundScene, sound_scene};
 pub use stacks::stack;

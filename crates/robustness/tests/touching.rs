@@ -3,8 +3,8 @@
 
 use crate::long::count;
 use robustness::{
-    Draws, cut_glass, fly, hardly_birefringent, interpolate, interpolate_small, stack, touch,
-    touching_kinds,
+    Draws, cut_glass, fly, hardly_birefringent, interpolate, interpolate_small,
+    interpolate_straight, stack, touch, touching_kinds,
 };
 
 #[test]
@@ -56,6 +56,9 @@ fn pictures_of_shared_rays_are_those_of_traced_ones() {
     let mut draws = Draws::Seed(20);
     for _ in 0..count(30, 600) {
         interpolate(&mut draws);
+    }
+    for _ in 0..count(30, 400) {
+        interpolate_straight(&mut draws);
     }
     for _ in 0..count(6, 200) {
         interpolate_small(&mut draws);

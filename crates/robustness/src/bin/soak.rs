@@ -129,11 +129,12 @@ fn write_line(mut record: &File, line: &Value) -> io::Result<()> {
 type Trial = fn(&mut Draws<'_>) -> u64;
 
 /// What parcels are of beside one device each.
-const TRIALS: [(&str, Trial); 7] = [
+const TRIALS: [(&str, Trial); 8] = [
     ("devices that touch", robustness::touch_any),
     ("cut glass", robustness::cut_glass),
     ("stacks of plates", robustness::stack),
     ("pictures of shared rays", robustness::interpolate),
+    ("pictures straight ahead", robustness::interpolate_straight),
     ("pictures of small parts", robustness::interpolate_small),
     ("light in flight", robustness::fly),
     ("hardly birefringent bodies", robustness::hardly_birefringent),

@@ -402,7 +402,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let launched: Vec<bool> = first.iter().map(is_launched).collect();
         for tracer in &mut self.scouts.tracers {
             let left_out = above.map(|above| self.levels[above].left_out.clone());
-            tracer.recorder().left_out = left_out.unwrap_or_default();
+            let trail = tracer.recorder();
+            // Of a patch that was given up halfway something may be left.
+            trail.clear();
+            trail.left_out = left_out.unwrap_or_default();
         }
         let share = above.map_or(1.0, |above| self.levels[above].traced);
         for (number, four) in rays.chunks(4).enumerate() {

@@ -142,6 +142,21 @@ fn interpolated_leaves_are_those_of_traced_rays() {
     assert!(rays > 5000, "{rays} rays are hardly a trial");
 }
 
+/// A patch is given up where one of its rays never ends; of those beside it nothing is left for the next patch.
+/// Along the axis such rays are at the nodes of patches.
+#[test]
+fn of_a_patch_that_is_given_up_nothing_is_left() {
+    let device = "kind = 'square-cloak'\nmaterial = 'negative-uniaxial'";
+    let text = format!("[camera]\nresolution = [640, 480]\nsamples = 4\n[[device]]\n{device}\n");
+    let scene = scene(&text);
+    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &scene.picture);
+    for corner in [[288, 224], [320, 224], [320, 192], [320, 160]] {
+        let errors = errors(&scene, &detection, corner, (1, 1));
+        let is_true = errors.place < 1e-6 && errors.power < 2e-6 && errors.others == 0;
+        assert!(is_true && errors.rays > 3000, "{corner:?}: {errors:?}");
+    }
+}
+
 /// With times, in a graded medium, and Stokes parameters.
 #[test]
 fn interpolated_paths_are_those_of_traced_rays() {
