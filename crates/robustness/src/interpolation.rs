@@ -197,13 +197,15 @@ fn camera() -> String {
 fn compare(draws: &mut Draws<'_>, scene: &Table, folder: &Path, part: Tile) -> u64 {
     // Pictures differ within the tolerance: coarser ones would show.
     let tolerance = 10f64.powf(draws.between(-9.0, -6.0));
-    let looked_at = |exact: bool| {
+    let scene = |exact: bool| {
         let mut scene = scene.clone();
         let trace: [(_, Value); 2] = [("tolerance", tolerance.into()), ("exact", exact.into())];
         let trace = trace.map(|(key, value)| (key.to_owned(), value));
         scene.insert("trace".to_owned(), Value::Table(Table::from_iter(trace)));
-        let text = scene.to_string();
-        let loaded = scene_file::parse(&text, "soak", folder, &[]).ok()?;
+        scene.to_string()
+    };
+    let looked_at = |exact: bool| {
+        let loaded = scene_file::parse(&scene(exact), "soak", folder, &[]).ok()?;
         let prepared = PreparedScene::new(&loaded.scene).ok()?;
         let stop = AtomicBool::new(false);
         let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
@@ -216,9 +218,9 @@ fn compare(draws: &mut Draws<'_>, scene: &Table, folder: &Path, part: Tile) -> u
     for (shared, exact) in shared.pixels().zip(exact.pixels()) {
         let steps = shared.0.iter().zip(exact.0).map(|(one, other)| one.abs_diff(other));
         let most = steps.max().unwrap_or(0);
-        assert!(most <= 1, "a pixel is off by {most} steps:\n{scene}");
+        assert!(most <= 1, "a pixel of {part} is off by {most} steps:\n{}", scene(false));
         differ += usize::from(most > 0);
     }
-    assert!(differ <= ROUNDED, "{differ} pixels differ:\n{scene}");
+    assert!(differ <= ROUNDED, "{differ} pixels of {part} differ:\n{}", scene(false));
     (2 * SAMPLES * SIZE[0] * SIZE[1]).unsigned_abs()
 }

@@ -62,6 +62,12 @@ const LEAST_COST: f64 = 0.03;
 /// What a division leaves to be traced of what was.
 const LEFT_AFTER_DIVISION: f64 = 0.5;
 
+/// Rays of more branches are traced: what they share is not worth finding out.
+const MOST_BRANCHES: usize = 256;
+
+/// To take rays to faces that they do not meet may cost this share of what it costs to trace all samples.
+const MOST_BESIDE: f64 = 0.25;
+
 /// Where this share is to be traced, all is: to interpolate the rest takes as long.
 const MOST_TRACED: f64 = 0.9;
 
@@ -127,6 +133,10 @@ pub(super) enum Fit {
     /// Nothing would be gained, however it is divided.
     Alone,
 }
+
+/// What rays share is not worth finding out.
+#[derive(Clone, Copy, Debug)]
+struct TooMuch;
 
 /// How many leaves of a patch vary too fast to be functions.
 #[derive(Clone, Copy, Debug, Default)]
@@ -438,18 +448,15 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                         // Light without end is told of in the picture's account, and takes its time.
                         return Fit::Alone;
                     };
-                    // What is known of the larger patch holds for its parts.
-                    let patch = here.patch;
-                    let coefficients = here.coefficients;
-                    *here = Level { patch, coefficients, ..self.levels[above].clone() };
-                    for tracer in &mut self.tracers.tracers {
-                        tracer.recorder().clone_from(&here.left_out);
-                    }
+                    self.keep_to_larger_patch(here, above);
                     return Fit::Shared;
                 }
                 if i < four.len() {
                     self.found.extend(leaves.iter().map(|leaf| (at + i, *leaf)));
                 }
+            }
+            if self.ways.steps() > MOST_BRANCHES * rays.len() {
+                return Fit::Alone;
             }
             let looked_at = if is_one { 4 } else { rays.len() };
             if at + four.len() == looked_at
@@ -467,10 +474,26 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 self.ways.launch(ray, number.map_or(u16::MAX, |number| number as u16));
             }
         }
-        let faces = self.look_beside(here, above, &rays);
+        let faces = match (self.look_beside(here, above, &rays), above) {
+            (Ok(faces), _) => faces,
+            (Err(TooMuch), None) => None,
+            (Err(TooMuch), Some(above)) => {
+                self.keep_to_larger_patch(here, above);
+                return Fit::Shared;
+            }
+        };
         let launched = bits((0..rays.len()).filter(|ray| launched[*ray]));
         self.gather(here, above, (rays.len(), launched), faces.as_deref());
         Fit::Shared
+    }
+
+    /// Leaves it at what is known of the larger patch: that holds for its parts.
+    fn keep_to_larger_patch(&mut self, here: &mut Level<N>, above: usize) {
+        let Level { patch, coefficients, .. } = *here;
+        *here = Level { patch, coefficients, ..self.levels[above].clone() };
+        for tracer in &mut self.tracers.tracers {
+            tracer.recorder().clone_from(&here.left_out);
+        }
     }
 
     /// Where rays part because they meet different faces, takes each of them to those that others
@@ -480,25 +503,31 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         here: &Level<N>,
         above: Option<usize>,
         rays: &[CameraRay],
-    ) -> Option<Arc<Faces>> {
+    ) -> Result<Option<Arc<Faces>>, TooMuch> {
         let least = KNOWN * self.prepared.limits.min_power;
-        let faces = Arc::new(self.ways.faces(&here.surfaces, least)?);
+        let Some(faces) = self.ways.faces(&here.surfaces, least) else { return Ok(None) };
+        let faces = Arc::new(faces);
         let branches = above.map_or(&[][..], |above| &self.levels[above].branches);
         let is_followed = |number: usize, ray: usize| self.followed[number] >> ray & 1 == 1;
         let some_follow = |(number, branch): (usize, &Smooth<Branch<N>>)| {
             faces.of(branch.first.path) != 0 && (0..rays.len()).any(|ray| !is_followed(number, ray))
         };
         if !faces.are_several() && !branches.iter().enumerate().any(some_follow) {
-            return Some(faces);
+            return Ok(Some(faces));
         }
-        let before = self.ways.steps();
+        let known = self.ways.known();
+        let (before, found) = (self.ways.steps(), self.found.len());
         let own = before as f64 / rays.len() as f64;
         let borders = above.and_then(|above| self.levels[above].borders).unwrap_or(own).max(1.0);
+        let [width, height] = here.patch.size;
+        let samples = (width * height) as f64 * f64::from(self.rays_per_pixel);
+        let most_steps = (MOST_BESIDE * own.max(1.0) * samples) as usize;
         let camera = &self.prepared.scene.camera;
         for (number, four) in rays.chunks(4).enumerate() {
             let at = 4 * number;
             let ray = |i: usize| i.min(four.len() - 1);
             let launches = std::array::from_fn(|i| self.detection.launch(camera, &four[ray(i)]));
+            let left = most_steps.saturating_sub(self.ways.steps() - before);
             for i in 0..4 {
                 let ray = at + ray(i);
                 let further_on = &mut self.further_on[i];
@@ -514,8 +543,9 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                         further_on.push(branch);
                     }
                 }
-                let beside = Some((Arc::clone(&faces), ray));
-                self.beside.tracers[i].recorder().beside = beside;
+                let trail = self.beside.tracers[i].recorder();
+                trail.beside = Some((Arc::clone(&faces), ray));
+                trail.most_steps = left;
             }
             let launched = std::array::from_fn(|i| faces.beside(LAUNCHED, at + ray(i)) != 0);
             self.beside.trace_further_on(&launches, launched, &self.further_on);
@@ -527,9 +557,18 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 }
                 tracer.recorder().clear();
             }
+            if self.ways.steps() - before >= most_steps {
+                break;
+            }
         }
-        self.walks += (self.ways.steps() - before) as f64 / borders;
-        Some(faces)
+        let steps = self.ways.steps() - before;
+        self.walks += steps as f64 / borders;
+        if steps >= most_steps {
+            self.ways.forget_since(known);
+            self.found.truncate(found);
+            return Err(TooMuch);
+        }
+        Ok(Some(faces))
     }
 
     /// Puts the branches in place from which on four rays of a patch, of that level or a part of

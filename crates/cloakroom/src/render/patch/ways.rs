@@ -125,6 +125,8 @@ pub(super) struct Trail<const N: usize> {
     pub left_out: LeftOut,
     /// The faces to which a ray is taken, where it does not meet them, and its number.
     pub beside: Option<(Arc<Faces>, usize)>,
+    /// It is taken no further after so many steps.
+    pub most_steps: usize,
 }
 
 /// The surfaces that rays meet first: each a device and its surface; `None` past all devices. Where
@@ -139,11 +141,17 @@ impl<const N: usize> Default for Trail<N> {
             arrivals: Vec::new(),
             left_out: LeftOut::default(),
             beside: None,
+            most_steps: usize::MAX,
         }
     }
 }
 
 impl<const N: usize> Trail<N> {
+    /// Whether the ray was to be taken further than it was.
+    pub fn is_too_long(&self) -> bool {
+        self.steps.len() >= self.most_steps
+    }
+
     pub fn clear(&mut self) {
         self.steps.clear();
         self.branches.clear();
@@ -183,7 +191,7 @@ impl<const N: usize> PathRecorder<N> for Trail<N> {
 
     fn went_on(&mut self, from: u64, to: u64, power: f64) -> bool {
         if let Some((faces, _)) = &self.beside
-            && faces.known.binary_search(&to).is_err()
+            && (faces.known.binary_search(&to).is_err() || self.is_too_long())
         {
             return false;
         }
@@ -287,6 +295,18 @@ impl<const N: usize> Ways<N> {
     /// How many branches are known, of all rays together.
     pub fn steps(&self) -> usize {
         self.steps.len()
+    }
+
+    /// How much is known.
+    pub fn known(&self) -> [usize; 3] {
+        [self.steps.len(), self.branches.len(), self.arrivals[1].len()]
+    }
+
+    /// Forgets what has been added since so much was known.
+    pub fn forget_since(&mut self, [steps, branches, arrivals]: [usize; 3]) {
+        self.steps.truncate(steps);
+        self.branches.truncate(branches);
+        self.arrivals[1].truncate(arrivals);
     }
 
     /// The faces to which branches come of the rays that have been added, and what comes of them of at least that
