@@ -157,6 +157,21 @@ fn of_a_patch_that_is_given_up_nothing_is_left() {
     }
 }
 
+/// Where rays at nodes run right into an edge, one face may be said to be met and the other be taken.
+#[test]
+fn rays_that_run_into_an_edge_mislead_no_others() {
+    let cloak = "kind = 'square-cloak'\ncore = 'open'\nrotation = 90";
+    let ball = "kind = 'body'\nshape = 'sphere'\nradius = 2\nposition = [0, 0.1, 0]\nmetal = true";
+    let text = format!(
+        "[camera]\nresolution = [320, 240]\nsamples = 4\nfield_of_view = 26\n[[device]]\n{cloak}\n[[device]]\n{ball}\n"
+    );
+    let scene = scene(&text);
+    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &scene.picture);
+    let errors = errors(&scene, &detection, [0, 96], (3, 1));
+    let is_true = errors.place < 1e-6 && errors.power < 2e-6 && errors.others == 0;
+    assert!(is_true && errors.rays > 3000, "{errors:?}");
+}
+
 /// With times, in a graded medium, and Stokes parameters.
 #[test]
 fn interpolated_paths_are_those_of_traced_rays() {

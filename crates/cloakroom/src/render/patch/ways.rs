@@ -427,13 +427,23 @@ impl<const N: usize> Ways<N> {
                 self.beginnings[number].choice.faces |= known;
             }
         }
-        // Each branch comes from one face.
+        // Each branch comes from one face. Of a ray that runs right into an edge it may be said to be the one, and taken
+        // to be the other.
         real.sort_unstable_by_key(|arrival| (arrival.path, arrival.ray));
+        let mut unsure = Vec::new();
         for beginning in &mut self.beginnings {
-            let ray = beginning.rays.trailing_zeros() as usize;
-            let key = |arrival: &Arrival| (arrival.path, arrival.ray);
-            let found = real.binary_search_by_key(&(beginning.from, ray), key);
-            beginning.from_face = found.ok().map(|place| real[place].face);
+            let first = real.partition_point(|arrival| arrival.path < beginning.from);
+            let of_path = real[first..].iter().take_while(|arrival| arrival.path == beginning.from);
+            let mut own = of_path.filter(|arrival| beginning.rays >> arrival.ray & 1 == 1);
+            beginning.from_face = own.next().map(|arrival| arrival.face);
+            if own.any(|arrival| Some(arrival.face) != beginning.from_face) {
+                unsure.push(beginning.from);
+            }
+        }
+        for path in unsure {
+            if self.choice(path).is_made() {
+                self.part_at(path);
+            }
         }
     }
 
