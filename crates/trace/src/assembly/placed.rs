@@ -92,6 +92,12 @@ impl Placed {
         }
     }
 
+    /// Whether a surface of it lies in a plane.
+    pub(crate) fn is_plane(&self, surface: u16) -> bool {
+        let surface = self.structure.surfaces.get(usize::from(surface));
+        surface.is_some_and(|surface| surface.plane().is_some())
+    }
+
     /// How large the smallest part of it looks at least, from wherever it is seen but edge on, cm: the
     /// middle one of the sides of a box around it, and of a mesh with dents the width of a triangle.
     /// Infinite if it is nowhere.

@@ -30,6 +30,11 @@ pub trait PathRecorder<const N: usize> {
     #[inline(always)]
     fn arrives(&mut self, _path: u64, _face: u16) {}
 
+    /// Called where a branch of that fingerprint has come through air to a surface of a device, given whether that lies
+    /// in a plane.
+    #[inline(always)]
+    fn meets(&mut self, _path: u64, _is_plane: impl FnOnce() -> bool) {}
+
     /// To which of the planes around a homogeneous medium, as bits by their numbers, a branch of that
     /// fingerprint is taken as if there were no others; `None`: to the one that it meets, and through
     /// what else there is. Of the launched ray in air, 0: to which surfaces of devices, by the numbers

@@ -101,6 +101,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         });
         branch.optical_path += hit.distance;
         branch.met_device = true;
+        let device = self.assembly.device(number);
+        self.recorder.meets(branch.path, || device.is_plane(hit.surface));
         if self.assembly.simple {
             return self.enter(branch, number, &hit);
         }
@@ -127,8 +129,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// Whether a surface of a device lies in a plane.
     #[must_use]
     pub fn is_plane(&self, (device, surface): (u16, u16)) -> bool {
-        let surface = self.assembly.device(device).structure.surfaces.get(usize::from(surface));
-        surface.is_some_and(|surface| surface.plane().is_some())
+        self.assembly.device(device).is_plane(surface)
     }
 
     /// Where a branch in air meets the plane of a surface.

@@ -455,7 +455,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                     self.found.extend(leaves.iter().map(|leaf| (at + i, *leaf)));
                 }
             }
-            if self.ways.steps() > MOST_BRANCHES * rays.len() {
+            let comes_far = !self.faceted
+                && self.ways.leave_planes
+                && self.further_on.iter().any(|branches| !branches.is_empty());
+            if comes_far || self.ways.steps() > MOST_BRANCHES * rays.len() {
                 return Fit::Alone;
             }
             let looked_at = if is_one { 4 } else { rays.len() };
@@ -818,6 +821,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             if parting.is_empty() {
                 return;
             }
+            if !self.faceted && self.ways.leave_planes {
+                parting.into_iter().for_each(|path| self.ways.part_before(path));
+                continue;
+            }
             let mut rough: Vec<u64> = Vec::new();
             let movable = self.ways.movable(&parting);
             let mut ways = movable.chunk_by(|(one, ..), (other, ..)| one == other).peekable();
@@ -879,6 +886,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 // What is rare is looked at more closely.
                 as_traced &= outcome.stats == TraceStats::default();
                 let left_out = self.tracers.tracers[i].watcher();
+                as_traced &=
+                    self.faceted || self.further_on[i].is_empty() || !left_out.has_left_planes();
                 as_traced &= self.met[i].iter().all(|place| left_out.has_met(*place));
             }
             let mut outcome = Outcome::default();

@@ -172,6 +172,20 @@ fn rays_that_run_into_an_edge_mislead_no_others() {
     assert!(is_true && errors.rays > 3000, "{errors:?}");
 }
 
+/// Light that goes through a lens again and again makes more and more of an error it comes with.
+#[test]
+fn what_is_curved_makes_nothing_of_errors() {
+    let box_size = "[50.24546426953748, 31.038911051582545, 42.342594660585746]";
+    let text = format!(
+        "[camera]\nresolution = [1280, 720]\nsamples = 4\n[trace]\ntolerance = 1.7e-7\n[[device]]\nkind = 'eaton-lens'\ncore = 'metal'\n[[device]]\nkind = 'body'\nshape = 'box'\npermittivity = 3.0505107707343995\nsize = {box_size}\n"
+    );
+    let scene = scene(&text);
+    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &scene.picture);
+    let errors = errors(&scene, &detection, [576, 320], (2, 1));
+    let is_true = errors.place < 1e-6 && errors.power < 2e-6 && errors.others == 0;
+    assert!(is_true && errors.rays > 1000, "{errors:?}");
+}
+
 /// With times, in a graded medium, and Stokes parameters.
 #[test]
 fn interpolated_paths_are_those_of_traced_rays() {

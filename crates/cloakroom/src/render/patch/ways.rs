@@ -115,12 +115,36 @@ fn among(faces: &[(u64, u64)], path: u64) -> u64 {
     found.map_or(0, |place| faces[place].1)
 }
 
+/// Tells whether branches go on from planes alone. What is curved or graded makes more of an
+/// error with which a branch comes, each time that it is passed.
+#[derive(Clone, Copy, Debug, Default)]
+struct Planes {
+    /// The branch that has come to one last.
+    arrived: u64,
+    are_left: bool,
+}
+
+impl Planes {
+    #[inline]
+    fn meet(&mut self, path: u64, is_plane: impl FnOnce() -> bool) {
+        if path != LAUNCHED && is_plane() {
+            self.arrived = path;
+        }
+    }
+
+    #[inline]
+    fn go_on_from(&mut self, path: u64) {
+        self.are_left |= path != LAUNCHED && path != self.arrived;
+    }
+}
+
 /// Notes where the branches of a ray go on, and those that may be followed from further on.
 #[derive(Clone, Debug)]
 pub(super) struct Trail<const N: usize> {
     steps: Vec<Step>,
     branches: Vec<Branch<N>>,
     arrivals: Vec<Arrival>,
+    planes: Planes,
     /// What is not looked at.
     pub left_out: LeftOut,
     /// The faces to which a ray is taken, where it does not meet them, and its number.
@@ -139,6 +163,7 @@ impl<const N: usize> Default for Trail<N> {
             steps: Vec::new(),
             branches: Vec::new(),
             arrivals: Vec::new(),
+            planes: Planes::default(),
             left_out: LeftOut::default(),
             beside: None,
             most_steps: usize::MAX,
@@ -156,6 +181,7 @@ impl<const N: usize> Trail<N> {
         self.steps.clear();
         self.branches.clear();
         self.arrivals.clear();
+        self.planes = Planes::default();
     }
 }
 
@@ -173,10 +199,16 @@ impl<const N: usize> PathRecorder<N> for Trail<N> {
     }
 
     fn arrives(&mut self, path: u64, face: u16) {
+        self.planes.arrived = path;
         // A ray that starts in a medium goes on from there.
         if path != LAUNCHED {
             self.arrivals.push(Arrival { path, face, ray: 0 });
         }
+    }
+
+    #[inline]
+    fn meets(&mut self, path: u64, is_plane: impl FnOnce() -> bool) {
+        self.planes.meet(path, is_plane);
     }
 
     #[inline]
@@ -195,6 +227,7 @@ impl<const N: usize> PathRecorder<N> for Trail<N> {
         {
             return false;
         }
+        self.planes.go_on_from(from);
         self.steps.push(Step { to, from, power, ray: 0, is_real: self.beside.is_none() });
         !self.left_out.has(to)
     }
@@ -254,6 +287,8 @@ pub(super) struct Ways<const N: usize> {
     branches: Vec<(usize, Branch<N>)>,
     /// The faces that are met, by rays and by those that are taken to others.
     arrivals: [Vec<Arrival>; 2],
+    /// Whether rays go on from something else than planes.
+    pub leave_planes: bool,
     /// How many rays there are.
     rays: usize,
 }
@@ -265,6 +300,7 @@ impl<const N: usize> Default for Ways<N> {
             beginnings: Vec::new(),
             branches: Vec::new(),
             arrivals: [Vec::new(), Vec::new()],
+            leave_planes: false,
             rays: 0,
         }
     }
@@ -276,10 +312,12 @@ impl<const N: usize> Ways<N> {
         self.beginnings.clear();
         self.branches.clear();
         self.arrivals.iter_mut().for_each(Vec::clear);
+        self.leave_planes = false;
     }
 
     /// Takes in what a ray has noted.
     pub fn add(&mut self, ray: usize, trail: &mut Trail<N>) {
+        self.leave_planes |= trail.planes.are_left;
         let arrivals = &mut self.arrivals[usize::from(trail.beside.is_some())];
         arrivals.extend(trail.arrivals.drain(..).map(|arrival| Arrival { ray, ..arrival }));
         self.steps.extend(trail.steps.drain(..).map(|step| Step { ray, ..step }));
@@ -682,6 +720,7 @@ pub(super) struct LeftOut {
     /// Their fingerprints, each at the place that its bits say or after it, and whether the ray has
     /// met it; a power of two of places.
     table: Vec<(u64, bool)>,
+    planes: Planes,
 }
 
 /// A place in the table without fingerprint.
@@ -696,8 +735,8 @@ impl Default for LeftOut {
 impl LeftOut {
     pub fn new(paths: impl Iterator<Item = u64>) -> Self {
         let paths: Vec<u64> = paths.filter(|path| *path != FREE).collect();
-        let mut left_out =
-            Self { table: vec![(FREE, false); (2 * paths.len() + 1).next_power_of_two()] };
+        let places = (2 * paths.len() + 1).next_power_of_two();
+        let mut left_out = Self { table: vec![(FREE, false); places], planes: Planes::default() };
         for path in paths {
             let place = left_out.place(path);
             left_out.table[place].0 = path;
@@ -728,9 +767,16 @@ impl LeftOut {
         self.table[place].1
     }
 
+    /// Whether the ray has gone on from something else than planes.
+    #[inline]
+    pub fn has_left_planes(&self) -> bool {
+        self.planes.are_left
+    }
+
     /// Begins with another ray.
     #[inline]
     pub fn begin(&mut self) {
+        self.planes = Planes::default();
         self.table.iter_mut().for_each(|(_, met)| *met = false);
     }
 }
@@ -742,7 +788,18 @@ impl<const N: usize> PathRecorder<N> for LeftOut {
     fn record(&mut self, _: impl FnOnce() -> PathSegment<N>) {}
 
     #[inline]
-    fn went_on(&mut self, _: u64, to: u64, _: f64) -> bool {
+    fn arrives(&mut self, path: u64, _: u16) {
+        self.planes.arrived = path;
+    }
+
+    #[inline]
+    fn meets(&mut self, path: u64, is_plane: impl FnOnce() -> bool) {
+        self.planes.meet(path, is_plane);
+    }
+
+    #[inline]
+    fn went_on(&mut self, from: u64, to: u64, _: f64) -> bool {
+        self.planes.go_on_from(from);
         let place = self.place(to);
         let (found, met) = &mut self.table[place];
         let is_there = *found != FREE;
