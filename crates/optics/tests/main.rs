@@ -4,6 +4,7 @@ mod birefringence;
 mod coatings;
 mod conformal_flow;
 mod conical_refraction;
+mod extreme_uniaxial;
 mod graded_index;
 mod grazing;
 mod group_path;

@@ -48,13 +48,25 @@ impl<T: Number> Uniaxial<T> {
         self.dual(ModeKind::Ordinary, p[2], electric, u)
     }
 
-    /// The extraordinary wave with E along `u`: H = µ⁻¹ (p × u) = (µp × u)/(µ_o µ_e).
+    /// The extraordinary wave with E along `u`, which is p × a but for p along a: H = µ⁻¹ (p × u), part by part
+    /// across the axis and along it.
+    ///
+    /// The latter is (a · p × u)/µ_e = (p·a)²/µ_o - ε, by the wave's equation: the one whose terms are smaller loses
+    /// less of its digits.
     pub(super) fn extraordinary_mode(&self, axis: [f64; 3], p: [T; 3], u: [T; 3]) -> LocalMode<T> {
-        let scale = T::from(1.0) / (self.ordinary * self.extraordinary);
         let a = axis.map(T::from);
-        let excess = (self.extraordinary - self.ordinary) * dot(p, a);
-        let induction: [T; 3] = std::array::from_fn(|i| self.ordinary * p[i] + excess * a[i]);
-        let magnetic = cross(induction, u).map(|component| component * scale);
+        let (on_axis, across) = (dot(p, a), cross(a, u));
+        let squared = on_axis * on_axis / self.ordinary;
+        let size = |v: [T; 3]| v.into_iter().map(T::magnitude_squared).sum::<f64>();
+        let by_equation = squared.magnitude_squared() + self.scalar.magnitude_squared();
+        let terms = size(p) * size(across);
+        let along = if terms <= by_equation * self.extraordinary.magnitude_squared() {
+            T::from(-1.0) * dot(p, across) / self.extraordinary
+        } else {
+            squared - self.scalar
+        };
+        let onward = on_axis / self.ordinary;
+        let magnetic = std::array::from_fn(|i| onward * across[i] + along * a[i]);
         self.dual(ModeKind::Extraordinary, p[2], u, magnetic)
     }
 
