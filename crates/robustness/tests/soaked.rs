@@ -1,7 +1,7 @@
 //! What the soak has found: devices and rays whose power was lost track of, or was no number.
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-use cloakroom::render;
+use cloakroom::render::{self, PreparedScene};
 use cloakroom::scene_file::{self, Loaded};
 use cloakroom::trace::{Launch, Limits, PathRecorder, PathSegment, TraceStats, Tracer};
 use glam::DVec3;
@@ -162,11 +162,13 @@ fn light_that_a_graded_medium_keeps_has_no_end() {
     assert_eq!((stats.endless, stats.lost), (1, 0));
 }
 
-/// Counts the ways from surface to surface.
+/// Counts the ways from surface to surface; of light that never gets out, too, unless that is cut.
 #[derive(Clone, Copy, Default)]
-struct Count(usize);
+struct Count<const CUTS: bool>(usize);
 
-impl<const N: usize> PathRecorder<N> for Count {
+impl<const N: usize, const CUTS: bool> PathRecorder<N> for Count<CUTS> {
+    const CUTS_KEPT_LIGHT: bool = CUTS;
+
     fn record(&mut self, _segment: impl FnOnce() -> PathSegment<N>) {
         self.0 += 1;
     }
@@ -181,7 +183,7 @@ fn light_that_is_trapped_where_ways_take_long_is_followed_along_fewer() {
     let loaded = scene(along_a_carpet).unwrap();
     let assembly = render::assembly(&loaded.scene).unwrap();
     let tracer = Tracer::new(&assembly, Limits { min_power: 1e-4, tolerance: 1e-6 });
-    let mut tracer = tracer.watched(Count::default());
+    let mut tracer = tracer.watched(Count::<false>::default());
     let origin = DVec3::new(-22.0, 68.0, -4.0);
     let mut most = 0;
     for i in 0..8 {
@@ -217,7 +219,7 @@ fn light_that_an_endless_device_keeps_is_cut_where_it_starts() {
         let loaded = scene(&format!("{device}\nrotation = 20\naxis = [0.2, 0.1, 1]")).unwrap();
         let assembly = render::assembly(&loaded.scene).unwrap();
         let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-3, tolerance: 1e-6 });
-        let mut follower = tracer.clone().watched(Count::default());
+        let mut follower = tracer.clone().watched(Count::<false>::default());
         for _ in 0..40 {
             let origin = 6.0 * draws.share() * draws.direction();
             let ray = launched(origin, draws.direction());
@@ -235,6 +237,37 @@ fn light_that_an_endless_device_keeps_is_cut_where_it_starts() {
         }
     }
     assert!(kept > 20 && others > 200, "{kept} {others}");
+}
+
+/// The same where the photograph comes close to what is endless, and cuts none of it: it stood in front of a
+/// carpet, from whose bounds its plane was not far, and rays took a sixth of a second each.
+#[test]
+fn a_photograph_beside_an_endless_device_lets_it_keep_light() {
+    let loaded = scene("kind = \"grating-carpet\"\nfloor = 400").unwrap();
+    let prepared = PreparedScene::new(&loaded.scene).unwrap();
+    let limits = Limits { min_power: 1e-3, tolerance: 1e-6 };
+    let tracer = Tracer::new(&prepared.assembly, limits).with_screen(prepared.screen);
+    let mut follower = tracer.clone().watched(Count::<false>::default());
+    let mut tracer = tracer.watched(Count::<true>::default());
+    let mut draws = Draws::Seed(3);
+    let mut kept = 0;
+    for _ in 0..60 {
+        let [x, y, slope] =
+            [(-5.0, 5.0), (5.0, 9.0), (-0.3, 0.3)].map(|(a, b)| draws.between(a, b));
+        let ray = launched(DVec3::new(x, y, 80.0), DVec3::new(0.1, slope, -1.0).normalize());
+        if !matches!(prepared.assembly.region_around(ray.origin, ray.direction), Ok(Some(_))) {
+            continue;
+        }
+        let (leaves, outcome) = tracer.trace(&ray);
+        let (followed, of_followed) = follower.trace(&ray);
+        assert_eq!(leaves, followed, "{ray:?}");
+        outcome.assert_balanced(leaves, 1e-9, &ray);
+        assert_eq!(outcome, of_followed, "{ray:?}");
+        let (ways, all) =
+            (std::mem::take(tracer.recorder()).0, std::mem::take(follower.recorder()).0);
+        kept += u32::from(ways == 0 && all > 500);
+    }
+    assert!(kept > 20, "{kept}");
 }
 
 /// The parts of an axis beside one of 1e164 were no zeros, but their squares were: light that ran in

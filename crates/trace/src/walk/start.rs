@@ -81,9 +81,9 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
     fn is_kept(&self, started: &Branch<N>) -> bool {
         let along = started.wave_vector * self.assembly.endless_axes;
         W::CUTS_KEPT_LIGHT
+            && self.keeps_light
             && along.length_squared() > SHORTER
             && self.draw.is_none()
-            && !self.screen_touches
     }
 }
 

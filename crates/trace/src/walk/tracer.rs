@@ -103,6 +103,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pulse_tolerance: f64,
     /// Whether the screen touches a device.
     pub(super) screen_touches: bool,
+    /// Whether what is endless may keep light: no screen is within, where it would end.
+    pub(super) keeps_light: bool,
     /// Whether nothing touches what rays leave: there is one device at most, no body, and the
     /// screen is apart.
     pub(super) stands_alone: bool,
@@ -141,6 +143,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             group_delays: false,
             pulse_tolerance: 0.0,
             screen_touches: false,
+            keeps_light: assembly.endless_axes != DVec3::ZERO,
             stands_alone: assembly.simple,
             waiting: Vec::new(),
             leaves: Vec::new(),
@@ -171,8 +174,11 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     #[must_use]
     pub fn with_screen(self, screen: Screen) -> Self {
         let screen_touches = screen.touches(self.assembly);
-        let stands_alone = self.assembly.simple && !screen_touches;
-        Self { screen_touches, stands_alone, screen: Some(screen), ..self }
+        let simple = self.assembly.simple;
+        let stands_alone = simple && !screen_touches;
+        let is_within = || !simple || screen.cut_by(self.assembly).is_some();
+        let keeps_light = self.keeps_light && !(screen_touches && is_within());
+        Self { screen_touches, keeps_light, stands_alone, screen: Some(screen), ..self }
     }
 
     /// Makes one branch of those that run together, as fields: in plates the ways are many, and the
