@@ -4,7 +4,7 @@ mod birefringence;
 mod coatings;
 mod conformal_flow;
 mod conical_refraction;
-mod extreme_uniaxial;
+mod extreme_media;
 mod graded_index;
 mod grazing;
 mod group_path;

@@ -5,6 +5,7 @@ use crate::rays::launch_along;
 use crate::scenes::{assembly, placed, tensor_near};
 use cloakroom::trace::{Coherence, Launch, Limits, Tracer};
 use glam::DVec3;
+use optics::geometry::TOUCHING;
 use std::fmt::Write;
 
 /// Followed so far that what is pruned does not count among fields.
@@ -52,8 +53,12 @@ pub fn stack(draws: &mut Draws<'_>) -> u64 {
         let thickness = 10f64.powf(draws.between(-4.9, -3.0));
         plate(draws, [x, x + thickness], 0);
         if bandwidth == 0.0 && draws.chance(128) {
-            let ends = [draws.between(0.0, 0.45), draws.between(0.55, 1.0)];
-            plate(draws, ends.map(|share| x + share * thickness), 1);
+            let within = [draws.between(0.0, 0.45), draws.between(0.0, 0.45)];
+            // Faces that are less than TOUCHING apart are one, and no phase tells how far they are.
+            let [before, behind] =
+                within.map(|share| Some(share * thickness).filter(|apart| *apart > TOUCHING));
+            let ends = [x + before.unwrap_or(0.0), x + thickness - behind.unwrap_or(0.0)];
+            plate(draws, ends, 1);
         }
         x += thickness;
         if draws.chance(64) {

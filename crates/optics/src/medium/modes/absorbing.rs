@@ -10,7 +10,8 @@ use num_complex::Complex64;
 
 type ComplexMode = LocalMode<Complex64>;
 
-/// Below this normal flux, relative to |E|² + |H|², a mode counts as evanescent.
+/// Below this normal flux, relative to the fields along the surface that it is made of, a mode counts as
+/// evanescent: where a principal value is next to zero, those across it may be far larger.
 const NO_FLUX: f64 = 1e-13;
 
 impl Medium {
@@ -40,9 +41,11 @@ impl Medium {
 /// A mode of normal flux 1. Under a wave that decays along the surface one that decays away from it
 /// may carry power towards it: that counts as evanescent.
 fn normalized(mode: ComplexMode, heading: f64) -> ComplexMode {
-    let (flux, norm) = (mode.flux() * heading, mode.norm_squared());
-    let propagating = flux > NO_FLUX * norm;
-    let size = if propagating { flux } else { norm };
+    let tangential = |[first, second, _]: [Complex64; 3]| first.norm_sqr() + second.norm_sqr();
+    let most = (tangential(mode.electric) * tangential(mode.magnetic)).sqrt();
+    let flux = mode.flux() * heading;
+    let propagating = flux > NO_FLUX * most;
+    let size = if propagating { flux } else { mode.norm_squared() };
     LocalMode { propagating, ..mode.scaled(size.sqrt().recip()) }
 }
 
