@@ -25,7 +25,7 @@ pub fn stack(draws: &mut Draws<'_>) -> u64 {
     const RAYS: u64 = 4;
     let pose = draws.pose();
     // Waves of one plate are told apart by their length in part, those of several too many for it.
-    let plates = 1 + draws.below(3);
+    let plates = 1 + draws.below(5);
     let bandwidth = if plates == 1 { *draws.pick(&[0.0, 1.0, 30.0, 100.0]) } else { 0.0 };
     let light = Coherence::new(550.0, bandwidth);
     let mut scene = String::new();

@@ -92,6 +92,9 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     /// Of the branches that wait, how many are in a heap, the strongest first; `None` where the last
     /// is taken.
     heaped: Option<usize>,
+    /// Where branches are joined, how many of them, the first ones, have met as many surfaces as the branch that is
+    /// followed; the others have met one more.
+    in_turn: usize,
     pub(super) recorder: W,
     /// Which branches become one where they run together.
     joining: Option<Joining>,
@@ -154,6 +157,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             next_look: EVENTS_PER_LOOK,
             looked_at: None,
             heaped: None,
+            in_turn: 0,
             started: (DVec3::NAN, None),
             recorder,
         }
@@ -286,7 +290,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
-        (self.most_cost, self.heaped) = (MUCH, None);
+        (self.most_cost, self.heaped, self.in_turn) = (MUCH, None, 0);
         self.start_anew();
     }
 
@@ -305,7 +309,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     ) -> Option<(u16, u16)> {
         if !self.pass(branch, region, passage.as_ref()) {
             self.take_next(branch)?;
-        } else if self.heaped.is_some() || self.has_forked() {
+        } else if self.joins().is_some() || self.heaped.is_some() || self.has_forked() {
             self.waiting.push(*branch);
             self.take_next(branch)?;
         }
@@ -522,8 +526,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     }
 
     /// Puts in place of a branch the one to be followed next: the last that waits, or the strongest
-    /// in large trees, or where branches are joined the one of the shortest path with all that run
-    /// together with it, or where a leaf is drawn the one that is. None if none waits.
+    /// in large trees, or where branches are joined [one](Self::take_joined) with all that run together with it, or
+    /// where a leaf is drawn the one that is. None if none waits.
     #[inline(always)]
     fn take_next(&mut self, branch: &mut Branch<N>) -> Option<()> {
         self.looked_at = None;
@@ -548,19 +552,38 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         if W::JOINS { self.joining } else { None }
     }
 
+    /// Puts in place of a branch the one of the shortest path, with all that run together with it, of those that
+    /// have met the fewest surfaces. From surface to surface all fields together keep their power, and only together:
+    /// what some of them add to others that wait may be more than they had.
     #[cold]
     fn take_joined(&mut self, branch: &mut Branch<N>, joining: Joining) -> Option<()> {
         loop {
-            let paths = self.waiting.iter().map(|branch| branch.optical_path).enumerate();
-            let (shortest, _) = paths.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-            *branch = self.waiting.swap_remove(shortest);
-            let assembly = self.assembly;
-            self.waiting.retain(|other| !joining.join(assembly, branch, other));
+            if self.in_turn == 0 || self.waiting.is_empty() {
+                self.in_turn = self.waiting.len();
+            }
+            let paths = self.waiting[..self.in_turn].iter().map(|branch| branch.optical_path);
+            let (shortest, _) = paths.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+            *branch = self.take_in_turn(shortest);
+            let mut number = 0;
+            while number < self.in_turn {
+                if joining.join(self.assembly, branch, &self.waiting[number]) {
+                    self.take_in_turn(number);
+                } else {
+                    number += 1;
+                }
+            }
             // Their fields may have cancelled.
             if self.follows(branch.power) {
                 return Some(());
             }
         }
+    }
+
+    /// Takes away one of those whose turn it is.
+    fn take_in_turn(&mut self, number: usize) -> Branch<N> {
+        self.in_turn -= 1;
+        self.waiting.swap(number, self.in_turn);
+        self.waiting.swap_remove(self.in_turn)
     }
 
     /// Whether what a pulse takes on a way of that optical path is asked for, by itself or as the
