@@ -81,7 +81,10 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
                  taken to be lost in it"
             )?;
         }
-        for line in media_line(structure).into_iter().chain(fact_lines(device.facts())) {
+        let imperfect = device.placement.imperfection.is_some();
+        let design = imperfect.then(|| "without its imperfections".to_owned());
+        let lines = media_line(structure).into_iter().chain(design);
+        for line in lines.chain(fact_lines(device.facts())) {
             writeln!(text, "             {line}")?;
         }
     }

@@ -79,7 +79,7 @@ fn found(name: &str) -> Result<Material> {
         return Ok(MaterialFile::read(path).map_err(Failure::Failed)?.material().clone());
     }
     let hint = cloakroom::keys::hint(name, &Material::NAMES, "there are");
-    Err(Failure::Usage(format!("there is no material `{name}`{hint}; a file's name ends in .yml")))
+    Err(Failure::Usage(format!("there is no material `{name}` (a file's name ends in .yml){hint}")))
 }
 
 /// The waves of a material, by their names, and their laws.

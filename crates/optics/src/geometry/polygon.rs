@@ -18,7 +18,9 @@ pub struct Polygon {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PolygonError {
     /// The corners lie on a line.
-    #[error("the corners lie on one line, or are fewer than three: they bound no area")]
+    #[error(
+        "the corners lie on one line, or are fewer than three that are {SAME_POINT} cm apart or more: they bound no area"
+    )]
     Flat,
     /// Two sides meet that are not neighbours.
     #[error(

@@ -116,7 +116,7 @@ pub enum ConformalMapError {
         value: f64,
     },
     /// The floor is so steep that the map folds over.
-    #[error("a {map} needs {limit}, not {ratio}")]
+    #[error("a {map} needs {limit}, not {ratio}; a lower or a wider bump would do")]
     Folds {
         /// Which map it was to be.
         map: &'static str,

@@ -379,7 +379,7 @@ fn check_material_name(name: &str) -> Result<(), String> {
         return Ok(());
     }
     let hint = hint(name, &Material::NAMES, "there are");
-    Err(format!("there is no material {}{hint}; a file's name ends in .yml", quoted(name, '`')))
+    Err(format!("there is no material {} (a file's name ends in .yml){hint}", quoted(name, '`')))
 }
 
 /// Refuses names of built-in images that do not exist; whether a file is there is not looked at.
