@@ -55,10 +55,11 @@ pub fn stack(draws: &mut Draws<'_>) -> u64 {
         if bandwidth == 0.0 && draws.chance(128) {
             let within = [draws.between(0.0, 0.45), draws.between(0.0, 0.45)];
             // Faces that are less than TOUCHING apart are one, and no phase tells how far they are.
-            let [before, behind] =
-                within.map(|share| Some(share * thickness).filter(|apart| *apart > TOUCHING));
-            let ends = [x + before.unwrap_or(0.0), x + thickness - behind.unwrap_or(0.0)];
-            plate(draws, ends, 1);
+            let [before, behind] = within.map(|share| {
+                let apart = share * thickness;
+                if apart > TOUCHING { apart } else { 0.0 }
+            });
+            plate(draws, [x + before, x + thickness - behind], 1);
         }
         x += thickness;
         if draws.chance(64) {
