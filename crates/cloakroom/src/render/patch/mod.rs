@@ -52,8 +52,8 @@ const KNOWN: f64 = 0.8;
 /// Rays at the nodes are traced so much more exactly than samples, for errors of theirs are not smooth.
 const CLOSER: f64 = 0.2;
 
-/// What a ray at a node costs in terms of a sample's (measured: more divisions would save rays, and cost
-/// each sample the terms of more patches).
+/// What a ray at a node costs at least in terms of a sample's (measured: more divisions would save rays, and
+/// cost each sample the terms of more patches).
 const COST: f64 = 4.0;
 
 /// What it costs at least, as a share of that, for light has to come to where rays part.
@@ -62,11 +62,13 @@ const LEAST_COST: f64 = 0.03;
 /// What a division leaves to be traced of what was.
 const LEFT_AFTER_DIVISION: f64 = 0.5;
 
-/// Rays of more branches are traced: what they share is not worth finding out.
-const MOST_BRANCHES: usize = 256;
+/// What a branch costs that is looked at for rays at nodes, in terms of a sample's (measured).
+const COST_OF_BRANCH: f64 = 2.0;
 
-/// To take rays to faces that they do not meet may cost this share of what it costs to trace all samples.
-const MOST_BESIDE: f64 = 0.25;
+/// Rays at nodes, and those that are taken to faces that they do not meet, may have these shares of as many
+/// branches as all samples would have, traced.
+const MOST_AT_NODES: f64 = 0.25;
+const MOST_BESIDE: f64 = 0.2;
 
 /// Where this share is to be traced, all is: to interpolate the rest takes as long.
 const MOST_TRACED: f64 = 0.9;
@@ -171,6 +173,8 @@ struct Level<const N: usize> {
     traced: f64,
     /// How many borders a ray meets of which nothing is left out, if that is known.
     borders: Option<f64>,
+    /// What a ray at a node has cost in terms of a sample's.
+    cost: f64,
     /// Where the coefficients of larger patches end.
     coefficients: usize,
 }
@@ -318,7 +322,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     /// How the patch that was fitted last is to be divided, if it is.
     pub fn division(&self) -> Option<[Patch; 2]> {
-        let Level { patch, traced, .. } = self.levels.last()?;
+        let Level { patch, traced, cost, .. } = self.levels.last()?;
         let [across, down] = self.cuts;
         let [width, height] = patch.size;
         let axis = usize::from(if across == down { height > width } else { down > across });
@@ -328,7 +332,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
         let shape = self.shape(halves[0], self.levels.len());
         let rays = 2 * shape.grid().points.len();
-        let cost = COST * traced.max(LEAST_COST);
+        let cost = cost * traced.max(LEAST_COST);
         (gain > cost * rays as f64).then_some(halves)
     }
 
@@ -352,6 +356,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             left_out: LeftOut::default(),
             traced: 1.0,
             borders: None,
+            cost: COST,
             coefficients: self.coefficients.len(),
         };
         let fit = self.look(&mut here);
@@ -432,7 +437,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             self.walks += four.len() as f64 * share;
             for (i, tracer) in self.scouts.tracers.iter_mut().enumerate() {
                 if i < four.len() {
-                    self.ways.add(at + i, tracer.recorder());
+                    self.ways.add(at + i, tracer.recorder(), self.prepared.limits.min_power);
                     for branch in &self.further_on[i] {
                         let branches = above.map_or(&[][..], |above| &self.levels[above].branches);
                         let is_it = |known: &Smooth<Branch<N>>| known.first.path == branch.path;
@@ -458,8 +463,15 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let comes_far = !self.faceted
                 && self.ways.leave_planes
                 && self.further_on.iter().any(|branches| !branches.is_empty());
-            if comes_far || self.ways.steps() > MOST_BRANCHES * rays.len() {
+            if comes_far {
                 return Fit::Alone;
+            }
+            if self.ways.looked_at() as f64
+                > MOST_AT_NODES * self.branches_to_trace(here.patch, at + four.len())
+            {
+                let Some(above) = above else { return Fit::Alone };
+                self.divide_no_more(here, above);
+                return Fit::Shared;
             }
             let looked_at = if is_one { 4 } else { rays.len() };
             if at + four.len() == looked_at
@@ -477,17 +489,29 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 self.ways.launch(ray, number.map_or(u16::MAX, |number| number as u16));
             }
         }
-        let faces = match (self.look_beside(here, above, &rays), above) {
+        let beside = self.look_beside(here, above, &rays);
+        let of_samples = self.ways.of_samples().max(rays.len());
+        let branches = self.ways.looked_at() as f64 / of_samples as f64;
+        here.cost = COST.max(COST_OF_BRANCH * branches);
+        let faces = match (beside, above) {
             (Ok(faces), _) => faces,
             (Err(TooMuch), None) => None,
             (Err(TooMuch), Some(above)) => {
-                self.keep_to_larger_patch(here, above);
+                self.divide_no_more(here, above);
                 return Fit::Shared;
             }
         };
         let launched = bits((0..rays.len()).filter(|ray| launched[*ray]));
         self.gather(here, above, (rays.len(), launched), faces.as_deref());
         Fit::Shared
+    }
+
+    /// How many branches all samples of a patch would have, traced, by what so many rays at nodes have.
+    fn branches_to_trace(&self, patch: Patch, rays: usize) -> f64 {
+        let [width, height] = patch.size;
+        let samples = (width * height) as f64 * f64::from(self.rays_per_pixel);
+        let of_each = self.ways.of_samples() as f64 / rays as f64;
+        of_each.max(1.0) * samples
     }
 
     /// Leaves it at what is known of the larger patch: that holds for its parts.
@@ -497,6 +521,12 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         for tracer in &mut self.tracers.tracers {
             tracer.recorder().clone_from(&here.left_out);
         }
+    }
+
+    /// The same, and its parts are not looked at.
+    fn divide_no_more(&mut self, here: &mut Level<N>, above: usize) {
+        self.keep_to_larger_patch(here, above);
+        here.cost = f64::INFINITY;
     }
 
     /// Where rays part because they meet different faces, takes each of them to those that others
@@ -520,22 +550,21 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }
         let known = self.ways.known();
         let (before, found) = (self.ways.steps(), self.found.len());
+        let looked_at = self.ways.looked_at();
         let own = before as f64 / rays.len() as f64;
         let borders = above.and_then(|above| self.levels[above].borders).unwrap_or(own).max(1.0);
-        let [width, height] = here.patch.size;
-        let samples = (width * height) as f64 * f64::from(self.rays_per_pixel);
-        let most_steps = (MOST_BESIDE * own.max(1.0) * samples) as usize;
+        let most = (MOST_BESIDE * self.branches_to_trace(here.patch, rays.len())) as usize;
         let camera = &self.prepared.scene.camera;
         for (number, four) in rays.chunks(4).enumerate() {
             let at = 4 * number;
             let ray = |i: usize| i.min(four.len() - 1);
             let launches = std::array::from_fn(|i| self.detection.launch(camera, &four[ray(i)]));
-            let left = most_steps.saturating_sub(self.ways.steps() - before);
+            let left = most.saturating_sub(self.ways.looked_at() - looked_at);
             for i in 0..4 {
                 let ray = at + ray(i);
                 let further_on = &mut self.further_on[i];
                 further_on.clear();
-                self.ways.with_others_beside(&faces, ray, further_on);
+                self.ways.with_others_beside(&faces, known, ray, further_on);
                 let point = here.patch.point(here.grid().points[ray]);
                 let mut terms = TermsOfLevels::at(point);
                 for (number, smooth) in branches.iter().enumerate() {
@@ -548,25 +577,24 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 }
                 let trail = self.beside.tracers[i].recorder();
                 trail.beside = Some((Arc::clone(&faces), ray));
-                trail.most_steps = left;
+                trail.most_looked_at = left;
             }
             let launched = std::array::from_fn(|i| faces.beside(LAUNCHED, at + ray(i)) != 0);
             self.beside.trace_further_on(&launches, launched, &self.further_on);
             for (i, tracer) in self.beside.tracers.iter_mut().enumerate() {
                 if i < four.len() {
-                    self.ways.add(at + i, tracer.recorder());
+                    self.ways.add(at + i, tracer.recorder(), self.prepared.limits.min_power);
                     let (leaves, _) = tracer.traced();
                     self.found.extend(leaves.iter().map(|leaf| (at + i, *leaf)));
                 }
                 tracer.recorder().clear();
             }
-            if self.ways.steps() - before >= most_steps {
+            if self.ways.looked_at() - looked_at >= most {
                 break;
             }
         }
-        let steps = self.ways.steps() - before;
-        self.walks += steps as f64 / borders;
-        if steps >= most_steps {
+        self.walks += (self.ways.steps() - before) as f64 / borders;
+        if self.ways.looked_at() - looked_at >= most {
             self.ways.forget_since(known);
             self.found.truncate(found);
             return Err(TooMuch);

@@ -186,6 +186,71 @@ fn what_is_curved_makes_nothing_of_errors() {
     assert!(is_true && errors.rays > 1000, "{errors:?}");
 }
 
+/// What it takes to share the rays of patches: the share of the picture that is traced nevertheless, and
+/// how many branches are looked at to find that out, as a share of what all samples have.
+fn price(scene: &Scene, corners: &[[usize; 2]]) -> [f64; 2] {
+    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &scene.picture);
+    let prepared = PreparedScene::new(scene).expect("sound");
+    let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+    let mut patches = LeafPatches::new(&prepared, &detection, &tracer, scene.camera.samples)
+        .expect("interpolated");
+    let mut single = tracer.clone().watched(Trail::default());
+    let (mut traced, mut looked_at, mut of_samples) = (0.0, 0, 0.0);
+    for corner in corners {
+        let mut parts = vec![(Patch { corner: *corner, size: [SIDE; 2] }, 0)];
+        while let Some((patch, level)) = parts.pop() {
+            patches.ways.clear();
+            let fit = patches.fit(patch, level);
+            looked_at += patches.ways.looked_at();
+            match patches.division().filter(|_| fit == Fit::Shared) {
+                Some(halves) => parts.extend(halves.map(|half| (half, level + 1)).iter().rev()),
+                None => {
+                    let share = if fit == Fit::Shared { patches.traced() } else { 1.0 };
+                    traced += share * (patch.size[0] * patch.size[1]) as f64;
+                }
+            }
+        }
+        // A ray of every sixteenth pixel.
+        for (x, y) in (0..SIDE / 4).flat_map(|y| (0..SIDE / 4).map(move |x| (x, y))) {
+            let [x, y] = [corner[0] + 4 * x, corner[1] + 4 * y].map(|pixel| pixel as f64 + 1.3);
+            single.trace(&detection.launch(&scene.camera, &scene.camera.ray(x, y)));
+            let branches = single.recorder().looked_at;
+            single.recorder().clear();
+            of_samples += 16.0 * f64::from(scene.camera.samples) * branches as f64;
+        }
+    }
+    let pixels = (corners.len() * SIDE * SIDE) as f64;
+    [traced / pixels, looked_at as f64 / of_samples]
+}
+
+/// Carpets of crystals, as they are made: rays of some hundred branches, most of which go everywhere.
+#[test]
+fn rays_in_carpets_of_crystals_are_shared() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../benches/compare/calcite_carpet.toml");
+    let text = std::fs::read_to_string(file).expect("a scene");
+    let text = text.replace("[camera]", "[camera]\nsamples = 16");
+    let [traced, looked_at] = price(&scene(&text), &[[448, 512], [512, 480], [544, 512]]);
+    assert!(traced < 0.3 && looked_at < 0.5, "{traced} of the rays, {looked_at} more branches");
+}
+
+/// Crystals that keep light, endless ones of which a single ray has hundreds of branches that no other
+/// ray has: to find that out takes less than to trace them.
+#[test]
+fn it_is_found_out_in_time_that_rays_share_nothing() {
+    let permittivities = [
+        "[[7.2771692192, 0.3750111997, 0.6672569299], [0.3750111997, 7.0319291765, 0.4838432229], [0.6672569299, 0.4838432229, 7.6209016042]]",
+        "[[2.5699886933, -0.1803018667, -0.1803018667], [-0.1803018667, 2.5699886933, -0.1803018667], [-0.1803018667, -0.1803018667, 2.5699886933]]",
+    ];
+    for permittivity in permittivities {
+        let corners = "[[-7.9, -6.4], [7.9, -6.4], [7.9, 6.4], [-7.9, 6.4]]";
+        let text = format!(
+            "[camera]\nresolution = [160, 120]\nsamples = 4\n[[device]]\nkind = 'prisms'\nposition = [0, -8, 0]\nrotation = 69\n[[device.prism]]\ncorners = {corners}\npermittivity = {permittivity}\n"
+        );
+        let price = price(&scene(&text), &[[64, 0], [64, 32], [64, 64], [96, 0], [96, 32]]);
+        assert!(price[1] < 0.5, "{permittivity}: {price:?}");
+    }
+}
+
 /// With times, in a graded medium, and Stokes parameters.
 #[test]
 fn interpolated_paths_are_those_of_traced_rays() {

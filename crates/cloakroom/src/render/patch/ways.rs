@@ -149,8 +149,10 @@ pub(super) struct Trail<const N: usize> {
     pub left_out: LeftOut,
     /// The faces to which a ray is taken, where it does not meet them, and its number.
     pub beside: Option<(Arc<Faces>, usize)>,
-    /// It is taken no further after so many steps.
-    pub most_steps: usize,
+    /// How many branches it has come to, those that are not followed among them.
+    pub looked_at: usize,
+    /// It is taken no further after so many.
+    pub most_looked_at: usize,
 }
 
 /// The surfaces that rays meet first: each a device and its surface; `None` past all devices. Where
@@ -166,7 +168,8 @@ impl<const N: usize> Default for Trail<N> {
             planes: Planes::default(),
             left_out: LeftOut::default(),
             beside: None,
-            most_steps: usize::MAX,
+            looked_at: 0,
+            most_looked_at: usize::MAX,
         }
     }
 }
@@ -174,7 +177,7 @@ impl<const N: usize> Default for Trail<N> {
 impl<const N: usize> Trail<N> {
     /// Whether the ray was to be taken further than it was.
     pub fn is_too_long(&self) -> bool {
-        self.steps.len() >= self.most_steps
+        self.looked_at >= self.most_looked_at
     }
 
     pub fn clear(&mut self) {
@@ -182,6 +185,7 @@ impl<const N: usize> Trail<N> {
         self.branches.clear();
         self.arrivals.clear();
         self.planes = Planes::default();
+        self.looked_at = 0;
     }
 }
 
@@ -222,6 +226,7 @@ impl<const N: usize> PathRecorder<N> for Trail<N> {
     }
 
     fn went_on(&mut self, from: u64, to: u64, power: f64) -> bool {
+        self.looked_at += 1;
         if let Some((faces, _)) = &self.beside
             && (faces.known.binary_search(&to).is_err() || self.is_too_long())
         {
@@ -282,7 +287,13 @@ impl Origin {
 #[derive(Debug)]
 pub(super) struct Ways<const N: usize> {
     steps: Vec<Step>,
+    /// How many branches have been looked at.
+    looked_at: usize,
+    /// How many of them samples would have.
+    of_samples: usize,
     beginnings: Vec<Beginning>,
+    /// Each branch after the one before, in order, by their fingerprints.
+    after: Vec<(u64, u64)>,
     /// The branches that may be followed from further on, each of one ray.
     branches: Vec<(usize, Branch<N>)>,
     /// The faces that are met, by rays and by those that are taken to others.
@@ -297,7 +308,10 @@ impl<const N: usize> Default for Ways<N> {
     fn default() -> Self {
         Self {
             steps: Vec::new(),
+            looked_at: 0,
+            of_samples: 0,
             beginnings: Vec::new(),
+            after: Vec::new(),
             branches: Vec::new(),
             arrivals: [Vec::new(), Vec::new()],
             leave_planes: false,
@@ -309,17 +323,23 @@ impl<const N: usize> Default for Ways<N> {
 impl<const N: usize> Ways<N> {
     pub fn clear(&mut self) {
         self.steps.clear();
+        self.looked_at = 0;
+        self.of_samples = 0;
         self.beginnings.clear();
+        self.after.clear();
         self.branches.clear();
         self.arrivals.iter_mut().for_each(Vec::clear);
         self.leave_planes = false;
     }
 
-    /// Takes in what a ray has noted.
-    pub fn add(&mut self, ray: usize, trail: &mut Trail<N>) {
+    /// Takes in what a ray has noted, of which samples have what is of at least that power.
+    pub fn add(&mut self, ray: usize, trail: &mut Trail<N>, least_power: f64) {
         self.leave_planes |= trail.planes.are_left;
         let arrivals = &mut self.arrivals[usize::from(trail.beside.is_some())];
         arrivals.extend(trail.arrivals.drain(..).map(|arrival| Arrival { ray, ..arrival }));
+        self.looked_at += std::mem::take(&mut trail.looked_at);
+        let of_samples = |step: &&Step| step.is_real && step.power >= least_power;
+        self.of_samples += trail.steps.iter().filter(of_samples).count();
         self.steps.extend(trail.steps.drain(..).map(|step| Step { ray, ..step }));
         self.branches.extend(trail.branches.drain(..).map(|branch| (ray, branch)));
     }
@@ -333,6 +353,16 @@ impl<const N: usize> Ways<N> {
     /// How many branches are known, of all rays together.
     pub fn steps(&self) -> usize {
         self.steps.len()
+    }
+
+    /// How many have been looked at, those that are not followed among them.
+    pub fn looked_at(&self) -> usize {
+        self.looked_at
+    }
+
+    /// How many of them samples would have that meet the same.
+    pub fn of_samples(&self) -> usize {
+        self.of_samples
     }
 
     /// How much is known.
@@ -395,9 +425,18 @@ impl<const N: usize> Ways<N> {
         Some(Faces { met, leading, of_rays, known, first_surfaces: first_surfaces.clone() })
     }
 
-    /// The branches of a ray that come to a face where others come to other ones.
-    pub fn with_others_beside(&self, faces: &Faces, ray: usize, found: &mut Vec<Branch<N>>) {
-        let own = self.branches.iter().filter(|(of, _)| *of == ray).map(|(_, branch)| branch);
+    /// The branches of a ray that come to a face where others come to other ones; only so much is looked at
+    /// as was [`known`](Self::known) then.
+    pub fn with_others_beside(
+        &self,
+        faces: &Faces,
+        [_, known, _]: [usize; 3],
+        ray: usize,
+        found: &mut Vec<Branch<N>>,
+    ) {
+        let known = &self.branches[..known];
+        let first = known.partition_point(|(of, _)| *of < ray);
+        let own = known[first..].iter().take_while(|(of, _)| *of == ray).map(|(_, branch)| branch);
         found.extend(own.filter(|branch| faces.beside(branch.path, ray) != 0));
     }
 
@@ -441,6 +480,9 @@ impl<const N: usize> Ways<N> {
             }
         }
         self.beginnings.sort_unstable_by_key(|beginning| beginning.path);
+        let others = self.beginnings.iter().filter(|beginning| beginning.from != beginning.path);
+        self.after.extend(others.map(|beginning| (beginning.from, beginning.path)));
+        self.after.sort_unstable();
         self.choose(faces);
         for number in 0..self.beginnings.len() {
             if !self.beginnings[number].shared {
@@ -521,25 +563,28 @@ impl<const N: usize> Ways<N> {
         if !std::mem::take(&mut self.beginnings[number].choice).is_made() {
             return;
         }
-        for number in 0..self.beginnings.len() {
-            let Beginning { path: own, rays, all_rays, .. } = self.beginnings[number];
-            if rays != all_rays && own != path && self.comes_of(own, path) {
-                let beginning = &mut self.beginnings[number];
+        for path in self.coming_of(path) {
+            let Some(number) = self.find(path) else { continue };
+            let beginning = &mut self.beginnings[number];
+            if beginning.rays != beginning.all_rays {
                 (beginning.shared, beginning.choice) = (false, Choice::default());
                 self.part_before_that(number);
             }
         }
     }
 
-    /// Whether a branch is another or comes of it.
-    fn comes_of(&self, mut path: u64, start: u64) -> bool {
-        while path != start {
-            match self.find(path).map(|number| self.beginnings[number].from) {
-                Some(from) if from != path => path = from,
-                _ => return false,
-            }
+    /// The branches that come of one.
+    fn coming_of(&self, path: u64) -> Vec<u64> {
+        let (mut found, mut next) = (Vec::new(), Some(path));
+        let mut looked_at = 0;
+        while let Some(from) = next {
+            let first = self.after.partition_point(|(before, _)| *before < from);
+            let after = self.after[first..].iter().take_while(|(before, _)| *before == from);
+            found.extend(after.map(|(_, path)| *path));
+            next = found.get(looked_at).copied();
+            looked_at += 1;
         }
-        true
+        found
     }
 
     /// The faces between which rays choose at the end of a branch.
@@ -589,16 +634,23 @@ impl<const N: usize> Ways<N> {
         branches: &mut Vec<Smooth<Branch<N>>>,
     ) {
         let is_lost = |ways: &Self, met: Option<u64>| met.is_some_and(|path| !ways.has(path));
-        while let Some(number) = branches.iter().position(|branch| is_lost(self, branch.met)) {
-            self.forget(branches.remove(number).first.path);
+        loop {
+            let lost = branches.extract_if(.., |branch| is_lost(self, branch.met));
+            let lost: Vec<u64> = lost.map(|branch| branch.first.path).collect();
+            if lost.is_empty() {
+                break;
+            }
+            self.forget(&lost);
         }
         leaves.retain(|leaf| !is_lost(self, leaf.met));
     }
 
-    /// Forgets a start that not all rays come to, with all that comes of it.
-    fn forget(&mut self, start: u64) {
-        let kept = self.beginnings.iter().filter(|beginning| !self.comes_of(beginning.path, start));
-        self.beginnings = kept.copied().collect();
+    /// Forgets starts that not all rays come to, with all that comes of them.
+    fn forget(&mut self, starts: &[u64]) {
+        let mut forgotten: Vec<u64> = starts.to_vec();
+        starts.iter().for_each(|start| forgotten.extend(self.coming_of(*start)));
+        forgotten.sort_unstable();
+        self.beginnings.retain(|beginning| forgotten.binary_search(&beginning.path).is_err());
     }
 
     fn find(&self, path: u64) -> Option<usize> {
@@ -817,7 +869,7 @@ mod tests {
         for &(from, to, power) in steps {
             trail.went_on(from, to, power);
         }
-        ways.add(ray, &mut trail);
+        ways.add(ray, &mut trail, 0.0);
     }
 
     /// Two rays that go 1, then 2 or 3, and 1, 4, 5 and 6; 12 and 13 are weak.
@@ -861,7 +913,7 @@ mod tests {
             trail.went_on(LAUNCHED, 1, 1.0);
             trail.arrives(1, face);
             trail.went_on(1, to, 0.5);
-            ways.add(ray, &mut trail);
+            ways.add(ray, &mut trail, 0.0);
         }
         let faces = Arc::new(ways.faces(&Surfaces::new(), 1e-4).expect("faces"));
         assert!(faces.are_several());
@@ -871,7 +923,7 @@ mod tests {
             let mut trail = Trail { beside: Some((Arc::clone(&faces), ray)), ..Trail::default() };
             trail.arrives(1, face);
             assert!(trail.went_on(1, to, 0.5) && !trail.went_on(1, 9, 0.5), "9 is not known");
-            ways.add(ray, &mut trail);
+            ways.add(ray, &mut trail, 0.0);
         }
         let start = Start { path: LAUNCHED, rays: 3, faces: 0 };
         ways.gather(2, [start].into_iter(), Some(&faces), 1e-4);
@@ -896,7 +948,7 @@ mod tests {
         let starts = [LAUNCHED, 7].map(|path| Start { path, rays: 1, faces: 0 });
         ways.gather(1, starts.into_iter(), None, 1e-4);
         assert_eq!(ways.met_on_the_way(9), Err(7));
-        ways.forget(7);
+        ways.forget(&[7]);
         assert!([7, 8, 9].iter().all(|path| !ways.has(*path)) && ways.has(1) && ways.has(LAUNCHED));
     }
 
