@@ -438,10 +438,12 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             for (i, tracer) in self.scouts.tracers.iter_mut().enumerate() {
                 if i < four.len() {
                     self.ways.add(at + i, tracer.recorder(), self.prepared.limits.min_power);
+                    // They are in the order of the branches that they are of.
+                    let branches = above.map_or(&[][..], |above| &self.levels[above].branches);
+                    let mut known = branches.iter().enumerate();
                     for branch in &self.further_on[i] {
-                        let branches = above.map_or(&[][..], |above| &self.levels[above].branches);
                         let is_it = |known: &Smooth<Branch<N>>| known.first.path == branch.path;
-                        if let Some(number) = branches.iter().position(is_it) {
+                        if let Some((number, _)) = known.find(|(_, known)| is_it(known)) {
                             self.followed[number] |= 1 << (at + i);
                         }
                     }
@@ -698,7 +700,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         for branch in &mut branches {
             branch.choice = self.ways.choice_in_part(branch.first.path, branch.choice, faces);
         }
-        let starts: Vec<Origin> = branches.iter().map(Origin::of).collect();
+        let mut starts: Vec<Origin> = branches.iter().map(Origin::of).collect();
+        starts.sort_unstable_by_key(|start| start.path);
         self.keep_what_is_needed(here, &mut leaves, &mut branches);
         self.find_choices_before(here, &starts, &mut leaves, &mut branches);
         for part in self.ways.some_have() {
@@ -767,16 +770,21 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         branches: &mut [Smooth<Branch<N>>],
     ) {
         let level = self.levels.len();
-        let paths: Vec<u64> = branches.iter().map(|branch| branch.first.path).collect();
+        let paths = branches.iter().map(|branch| branch.first.path);
+        let mut numbers: Vec<(u64, usize)> = paths.zip(1..).collect();
+        numbers.sort_unstable();
         let given = |path: u64| match self.ways.chosen_on_the_way(path) {
             Ok(chosen) => Some(chosen),
             Err(LAUNCHED) if path == LAUNCHED => Some((LAUNCHED, here.past_all()?)),
-            Err(start) => starts.iter().find(|known| known.path == start)?.given,
+            Err(start) => ways::origin(starts, start)?.given,
         };
         // The launched ray comes before all branches.
         let number_of = |(chooser, _): (u64, u16)| match chooser {
             LAUNCHED => Some(0),
-            _ => Some(1 + paths.iter().position(|path| *path == chooser)?),
+            _ => {
+                let found = numbers.binary_search_by_key(&chooser, |(path, _)| *path).ok()?;
+                Some(numbers[found].1)
+            }
         };
         let chooser = |given: Option<(u64, u16)>| given.and_then(number_of).unwrap_or(usize::MAX);
         for branch in branches {

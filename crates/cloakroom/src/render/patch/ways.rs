@@ -283,6 +283,12 @@ impl Origin {
     }
 }
 
+/// That of a branch among others in order.
+pub(super) fn origin(origins: &[Origin], path: u64) -> Option<&Origin> {
+    let found = origins.binary_search_by_key(&path, |origin| origin.path);
+    found.ok().map(|place| &origins[place])
+}
+
 /// The tree of all ways that the rays of a patch take.
 #[derive(Debug)]
 pub(super) struct Ways<const N: usize> {
@@ -748,7 +754,7 @@ impl<const N: usize> Ways<N> {
             match self.met_on_the_way(path) {
                 Ok(met) => return Some(met),
                 Err(start) => {
-                    let met = starts.iter().find(|known| known.path == start)?.met?;
+                    let met = origin(starts, start)?.met?;
                     if met == path {
                         // No ray of the patch comes there.
                         return Some(met);
