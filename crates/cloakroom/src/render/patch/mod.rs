@@ -328,8 +328,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let axis = usize::from(if across == down { height > width } else { down > across });
         let divisible = |axis: &usize| patch.size[*axis] > LEAST_SIDE;
         let halves = patch.halves([axis, 1 - axis].into_iter().find(divisible)?);
-        let samples = width * height * self.rays_per_pixel as usize;
-        let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
+        let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * self.samples_in(*patch);
         let shape = self.shape(halves[0], self.levels.len());
         let rays = 2 * shape.grid().points.len();
         let cost = cost * traced.max(LEAST_COST);
@@ -510,10 +509,14 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     /// How many branches all samples of a patch would have, traced, by what so many rays at nodes have.
     fn branches_to_trace(&self, patch: Patch, rays: usize) -> f64 {
-        let [width, height] = patch.size;
-        let samples = (width * height) as f64 * f64::from(self.rays_per_pixel);
         let of_each = self.ways.of_samples() as f64 / rays as f64;
-        of_each.max(1.0) * samples
+        of_each.max(1.0) * self.samples_in(patch)
+    }
+
+    /// How many samples a patch has.
+    fn samples_in(&self, patch: Patch) -> f64 {
+        let [width, height] = patch.size;
+        (width * height) as f64 * f64::from(self.rays_per_pixel)
     }
 
     /// Leaves it at what is known of the larger patch: that holds for its parts.
